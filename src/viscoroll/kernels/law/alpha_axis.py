@@ -139,6 +139,8 @@ def _make_sum(lengths):
         )
         for length, target in zip(lengths, targets):
             total = zero
+            # from the highest T_4g down, as the groups are stored; a cubic as two linear parts in
+            # s, which do not wait for one another
             for T in reversed([one, *chebyshev][:length]):
                 low, linear, high, cubic = (next(terms) for _ in range(GROUP))
                 low = fma_vectors(builder, linear, power, low)
@@ -178,15 +180,17 @@ def select_alpha(n, source):
     source = record_at(source)
     alpha = element(floats_at(source.alpha, source.state_count), n)
     rows = floats_at(source.rows, ROW_SIZE)
+    # rows[ALPHA] is 0 before the first call, which no alpha equals
     if alpha != rows[ALPHA]:
         bits = float_to_bits(alpha)
-        octave = (bits >> 52) - _BIAS
+        octave = (bits >> 52) - _BIAS  # exponent N of alpha, >= 0, from its bits: no sign to mask
         marks = integers_at(source.marks, PARTS_PER_ROW)
         first = OCTAVE_SIZE * octave
         octaves = integers_at(source.octaves, first + OCTAVE_SIZE)
         # The mantissa of alpha in [1, 2) is alpha/2^N.
         s = 2.0 * np.log2(bits_to_float((bits & _MANTISSA) | (_BIAS << 52))) - 1.0
-        # T_2; then T_4 = 2 T_2^2 - 1, T_8 = 2 T_4^2 - 1 and T_12 = T_4 (2 T_8 - 1).
+        # T_2; then T_4 = 2 T_2^2 - 1, T_8 = 2 T_4^2 - 1 and T_12 = T_4 (2 T_8 - 1), each difference
+        # rounded once.
         second = fma(2.0 * s, s, -1.0)
         rows[_S] = s
         rows[_S + 1] = fma(2.0 * second, second, -1.0)
@@ -198,9 +202,10 @@ def select_alpha(n, source):
         rows[LAM_FAST] = 1.0 / np.sqrt(alpha)
         rows[FAST_TOTAL] = c
         rows[FAST_TOTAL + 1] = c * _FAST_RATIO
-        marks[VERSION] += 1
+        marks[VERSION] += 1  # all parts that were made before are outdated
         marks[_AXIS] = octaves[first]
         marks[_AXIS + 1] = octaves[first + 1]
+        # alpha = 1: beyond row 0 the fast limit with W = C = 0 is exact, and needs no rows
         marks[ROW_COUNT] = octaves[first + 2] if alpha > 1.0 else 1
 
 
@@ -227,6 +232,8 @@ def make_part(number, source):
     row = (number >> _PARTS_EXPONENT) - 1
     c = rows[FAST_TOTAL]  # (alpha - 1)/alpha
     pair = part < H_OVER_F2 // PART_SIZE
+    # Parts 0 and 2 are the pairs, functions 0 and 1 of a row on the axis; parts 6 and 7 the single
+    # functions, 2 and 3.  ``begins`` counts groups of four vectors of eight numbers.
     function = row * ALPHA_FUNCTIONS + (part >> 1 if pair else part - ALPHA_FUNCTIONS)
     begins = integers_at(marks[_AXIS + 1], function + 2)
     size = BLOCK_SIZE * GROUP
@@ -235,7 +242,7 @@ def make_part(number, source):
     axis = floats_at(marks[_AXIS], stop)
     # read once: stores to rows could change them for all that the compiler knows
     s = rows[_S], rows[_S + 1], rows[_S + 2], rows[_S + 3]
-    if c == 0.0:  # alpha = 1
+    if c == 0.0:  # alpha = 1: the constant of the first function is 1, all other numbers are 0
         for k in range(start, start + (2 * PART_SIZE if pair else PART_SIZE)):
             rows[k] = 0.0
         rows[start] = 1.0

@@ -135,6 +135,8 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     Returns [a_0 = 1, a_1, ...], a list of ``terms`` Decimals, in the digits of the current decimal
     context.
     """
+    # Of the Riccati equation the coefficient of x^-n is compared: r^2 or k^2 gives 2 a_0 a_n and
+    # ``products``, the slope -(n - 1) a_(n-1), and r/x or k/z a_(n-1).
     a = [Decimal(1)]
     for n in range(1, terms):
         products = sum(a[i] * a[n - i] for i in range(1, n))
@@ -198,12 +200,13 @@ def ratio_r(x):
     1 - r falls like 1/(2 x) and is computed without cancellation, so that it keeps its digits where
     r itself is rounded to 1.0, from x = 1e16 or so on.
     """
-    inverse_x = 1.0 / x
+    inverse_x = 1.0 / x  # infinite at x = 0, where the product with it is not selected
     # selections, not branches: those would be mispredicted on scattered arguments
     near = x < _NEAR
     far = not x < _FAR  # also for NaN, which must not become the number of a bin
     row = bin_number(x, _BIN_BITS) + (_R_SMALL if x < 2.0 else _R_LARGE)
     row = _R_NEAR if near else _R_FAR if far else row
+    # r/x below 2, x (1 - r) from there on; the arguments are those of the rows (_ROWS)
     piece = _polynomial(row, x * x if near else inverse_x if far else bin_offset(x, _BIN_BITS))
     r = x * piece
     complement = piece * inverse_x
@@ -221,10 +224,11 @@ def ratio_k(z):
     k itself is rounded to 1.0, from z = 1e16 or so on.
     """
     if z < K_LEAST:
+        # K0 = ln 2 - gamma - ln z and K1 = 1/z, to rounding; 0 ln 0 would be a NaN
         k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
         return k, 1.0 - k
     inverse_z = 1.0 / z
-    inside = z < _FAR
+    inside = z < _FAR  # False for NaN, which must not become the number of a bin
     row = bin_number(z, _BIN_BITS) + (_K_SMALL if z < 1.0 else _K_LARGE)
     piece = _polynomial(
         row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else inverse_z
@@ -244,7 +248,7 @@ def ratio_i2(x, r):
     or so on; subnormal, with fewer digits, below x = 1e-153 or so, and 0 below 1e-162 and at x = 0;
     NaN of a NaN.
     """
-    if not x < 4.0:  # or a NaN
+    if not x < 4.0:  # or a NaN; below 4 this difference would lose digits
         return 1.0 - 2.0 * r / x
     near = x < _NEAR
     row = _I2_NEAR if near else bin_number(x, _BIN_BITS) + _I2

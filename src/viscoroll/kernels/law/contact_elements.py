@@ -59,8 +59,9 @@ def _gathered(t, spots, used):
     It is the sum over refinements of weight sgn(t - t_k) ln(1 + |t - t_k|/width).
 
     t : float, parameter of the mesh, in [0, 1].
-    spots : (most, 3), t_k, width and weight of each refinement, as in :func:`make_mesh`.
-    used : int, number of refinements.
+    spots : (most, 3), t_k in [0, 1], width > 0 in the parameter and weight of each refinement, the
+        number of elements in a factor of e of the distance from it.
+    used : int, number of refinements, rows of ``spots`` that count.
     """
     total = 0.0
     rate = 0.0
@@ -68,6 +69,7 @@ def _gathered(t, spots, used):
         distance = t - spots[k, 0]
         width = spots[k, 1]
         weight = spots[k, 2]
+        # odd about the spot, so that it ascends everywhere: the slope is the same on both sides
         total += math.copysign(weight * math.log(1.0 + abs(distance) / width), distance)
         rate += weight / (abs(distance) + width)
     return total, rate
@@ -84,11 +86,14 @@ def make_mesh(c, spots, used, nodes, at, place):
     spots : (most, 3): parameter in [0, 1], width > 0 in the parameter, and number of elements in a
         factor of e of the distance from it; changed in place: weights are reduced where spots would
         take more than :data:`_SPOTS_PART`.
-    used : number of spots.
-    nodes, at, place : (N + 1,), (N,) and (N + 1,), written: from -c to c; the parameter of each
-    node.
+    used : int, number of spots, rows of ``spots`` that count.
+    nodes, at, place : (N + 1,), (N,) and (N + 1,), written: nodes, ascending from -c to c; places
+        of collocation, each half an element after the node before it; the parameter of each node,
+        from 0 to 1.
+    Returns nothing.
     """
     count = at.size
+    # elements that the spots take, high - low, at most a part of all: the others are left for a > 0
     low, _ = _gathered(0.0, spots, used)
     high, _ = _gathered(1.0, spots, used)
     if high - low > _SPOTS_PART * count:
@@ -102,10 +107,10 @@ def make_mesh(c, spots, used, nodes, at, place):
     # Nodes and, half an element after each, places: t with s(t) - s(0) = n/2, by Newton's
     # iteration, bisected where it leaves its bracket.
     for n in range(2 * count + 1):
-        wanted = 0.5 * n + low
-        left = t
+        wanted = 0.5 * n + low  # low: total of the spots at t = 0, so that s(0) counts as 0
+        left = t  # s ascends: t is not below that of the place before
         right = 1.0
-        t = min(t + 0.5 / count, 1.0)
+        t = min(t + 0.5 / count, 1.0)  # first guess: half an element of equal ones further
         for _ in range(_MOST_STEPS):
             total, rate = _gathered(t, spots, used)
             error = plain * t + total - wanted
@@ -123,7 +128,7 @@ def make_mesh(c, spots, used, nodes, at, place):
         if n == 2 * count:
             t = 1.0
         x = -c + 2.0 * c * graded(t)
-        if n % 2:
+        if n % 2:  # odd: the place in element n // 2, else node n // 2
             at[n // 2] = x
         else:
             nodes[n // 2] = x
@@ -132,7 +137,12 @@ def make_mesh(c, spots, used, nodes, at, place):
 
 @kernel
 def scale_mesh(c, nodes, at):
-    """Scale a mesh to another half length, c.  nodes, at : (N + 1,) and (N,), changed."""
+    """Scale a mesh to another half length about its middle, x = 0.
+
+    c : float, the new half length, > 0.
+    nodes, at : nodes and places of collocation, (N + 1,) and (N,), changed.
+    Returns nothing; parameters of the nodes stay.
+    """
     factor = 2.0 * c / (nodes[at.size] - nodes[0])
     for n in range(at.size):
         nodes[n] *= factor
@@ -151,14 +161,16 @@ def _local_part(local, h):
 
     It is the integral of the memory times what linear tractions leave out: the parabola that is 1
     there and 0 at the ends of the element, less its mean 2/3, which the values at the nodes make up
-    for.  With r = h/(2 length) the integral of exp(-s) (1/3 - s^2/r^2) over s from 0 to r.
+    for.  With r = h/(2 length) the integral of exp(-s) (1/3 - s^2/r^2) over s from 0 to r, which is
+    (1 - e)/3 - (2 - e (r^2 + 2 r + 2))/r^2 with e = exp(-r).
     """
     found = 0.0
     for k in range(local.shape[0]):
         length = local[k, 1]
         r = 0.5 * h / length if length > 0.0 else np.inf
-        # Where terms of the closed form cancel, its first term; where exp(-r) is below rounding, or
-        # r infinite, the form without it.
+        # Where terms of the closed form cancel, the first term of its series, r^2/12; where exp(-r)
+        # is below rounding, or r infinite, the form without it, in which r^2 is not formed: it
+        # might overflow.
         if r < _SMALL_RATIO:
             found += local[k, 0] * r * r / 12.0
         elif r > _LARGE_RATIO:
@@ -176,9 +188,10 @@ def add_local(local, nodes, at, C):
     """Add to the local part of the coupling what linear tractions leave out, by the values at four
     nodes.
 
-    local : as of :func:`_local_part`.
-    nodes, at : mesh, (N + 1,) and (N,).
-    C : (N, N - 1), matrix of :func:`assemble`, changed.
+    local : (modes, 2), strength and length, divided by l0, of each mode, 0 for the length of the
+        instantaneous one.
+    nodes, at : mesh, (N + 1,) and (N,), N >= 2.
+    C : (N, N - 1), matrix of :func:`assemble`, changed: row e belongs to the place in element e.
     The tractions are odd about the two outer nodes, in the parameter of the mesh.  Returns nothing.
     """
     last = at.size - 1
@@ -189,6 +202,7 @@ def add_local(local, nodes, at, C):
         # (-1, 9, 9, -1)/16 in the middle of the element, less the linear interpolation, with
         # weights 1 - ``ahead`` and ``ahead``.  Column n belongs to node n + 1.
         ahead = (at[e] - nodes[e]) / h
+        # 0.5625 = 9/16 and 0.0625 = 1/16; the outer nodes have no traction and no column
         if e > 0:
             C[e, e - 1] += part * (0.5625 - (1.0 - ahead))
         if e < last:
@@ -210,10 +224,11 @@ def assemble(table, instant, nodes, at, H, T, C):
 
     table : polynomials in ln|x|, (BINS, 2 signs of x, 3 kernels, DEGREE + 1), of the slope by
         pressure, of the strain by shear, and of the coupling; without ``instant`` x ln|x|/pi of the
-        first two.
+        first two.  Sign 0 is that of x > 0, the constant of a polynomial in y comes first.
     instant : instantaneous compliance over the summed long-time compliance.
-    nodes, at : mesh, (N + 1,) and (N,), of at most exp(1.4) in all.
-    H, T, C : (N, N - 1) each, written: slope at places by the traction at inner nodes.
+    nodes, at : mesh, (N + 1,) and (N,), of at most exp(1.4) in all; no place is a node.
+    H, T, C : (N, N - 1) each, written: slope by pressure, strain by shear, and coupling, at the
+        place in element i by the traction 1 at inner node n.  Returns nothing.
     """
     N = at.size
     # Second antiderivatives of the three kernels, at the place i less each node.
@@ -224,7 +239,8 @@ def assemble(table, instant, nodes, at, H, T, C):
         for j in range(N + 1):
             x = at[i] - nodes[j]
             log = math.log(abs(x))
-            # Bin b of ln|x|, and the position y in it in [-1, 1].
+            # Bin b of ln|x|, and the position y in it in [-1, 1].  Beyond the bins the first or the
+            # last polynomial is extrapolated.
             y = (log - LOWEST) / WIDTH
             b = min(max(int(y), 0), BINS - 1)
             y = 2.0 * (y - b) - 1.0
@@ -236,6 +252,7 @@ def assemble(table, instant, nodes, at, H, T, C):
                 a0 = fma(a0, y, p[0, d])
                 a1 = fma(a1, y, p[1, d])
                 a2 = fma(a2, y, p[2, d])
+            # the part of an instantaneous half-space, which the table leaves out
             own = instant * x * log / math.pi
             first[j] = a0 + own
             second[j] = a1 + own
@@ -271,6 +288,7 @@ def moments(nodes, values):
         a = node_value(values, e)
         b = node_value(values, e + 1)
         h = nodes[e + 1] - nodes[e]
+        # linear from a to b: the moment about the left node is h^2 (a + 2 b)/6
         total += 0.5 * h * (a + b)
         moment += h * (0.5 * nodes[e] * (a + b) + h * (a + 2.0 * b) / 6.0)
     return total, moment
@@ -283,9 +301,9 @@ def product(nodes, at, values, slope):
     The gradient in an element is that between the places of its neighbours, so that a linear slope
     is exact.
 
-    nodes, at : mesh, (N + 1,) and (N,).
+    nodes, at : mesh, (N + 1,) and (N,), N >= 2.
     values : traction at inner nodes, (N - 1,).
-    slope : at ``at``, (N,).
+    slope : (N,), the slope at the places ``at``, one in each element.
     Returns a float, in the units of the module.
     """
     found = 0.0
@@ -297,6 +315,8 @@ def product(nodes, at, values, slope):
         low = max(e - 1, 0)
         high = min(e + 1, last)
         gradient = (slope[high] - slope[low]) / (at[high] - at[low])
+        # Slope in the middle of the element; the product of the linear parts of both about it has
+        # the integral gradient (b - a)/h h^3/12.
         middle = slope[e] + gradient * (0.5 * (nodes[e] + nodes[e + 1]) - at[e])
         found += h * (0.5 * (a + b) * middle + gradient * h * (b - a) / 12.0)
     return found
@@ -318,9 +338,10 @@ def factor(matrix, order):
     """Replace a square matrix by its factors L and U, with row exchanges; return whether no pivot
     is 0.
 
-    matrix : (n, n), overwritten.
-    order : (n,), int, written: the row that was exchanged with each.
-    The diagonal of L is 1 and not stored.
+    matrix : (n, n), overwritten by U on and above the diagonal and L below it; the diagonal of L is
+        1 and not stored.  Where a pivot is 0 or NaN it is left half factorized.
+    order : (n,), int, written: the row, from k on, that was exchanged with row k at step k.
+    Returns a bool.
     """
     n = matrix.shape[0]
     for k in range(n):
@@ -331,7 +352,7 @@ def factor(matrix, order):
         order[k] = best
         if not abs(matrix[best, k]) > 0.0:  # True for NaN too.
             return False
-        if best != k:
+        if best != k:  # whole rows, with the part of L that they have
             for j in range(n):
                 kept = matrix[k, j]
                 matrix[k, j] = matrix[best, j]
@@ -352,8 +373,8 @@ def factor(matrix, order):
 def substitute(matrix, order, right):
     """Solve for many right sides with the factors of :func:`factor`.
 
-    matrix, order : factors and row exchanges, (n, n) and (n,).
-    right : (n, m), replaced by the solutions.  Returns nothing.
+    matrix, order : factors and row exchanges, (n, n) and (n,), of a call that returned True.
+    right : (n, m), m right sides as columns, replaced by the solutions.  Returns nothing.
     """
     n, m = right.shape
     # Row exchanges, then L from the first row on, then U from the last row on.
@@ -387,14 +408,15 @@ def substitute(matrix, order, right):
 def eliminate(H, C, at, coupled):
     """Eliminate pressure and g: p = a - B q.
 
-    H, C : matrices of slopes, (N, N - 1).
-    at : places of collocation, (N,).
-    coupled : whether C is not 0.
-    Returns (whether the matrix has an inverse; (N, N): B in its first N - 1 columns, a in the last;
-    the last row belongs to g).  Without ``coupled`` B is 0.
+    H, C : matrices of slopes by pressure and by coupling, (N, N - 1), not changed.
+    at : places of collocation from the middle of the contact on, (N,).
+    coupled : bool, whether C is not 0; else it is not read.
+    Returns (whether the matrix has an inverse, a bool; (N, N): B in its first N - 1 columns, a in
+    the last; the last row belongs to g; zeros without an inverse).  Without ``coupled`` B is 0.
     """
     N = at.size
-    # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g.
+    # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g: (p, g) is the inverse times
+    # x, the column a, less the inverse times C, the columns B, times q.
     matrix = np.empty((N, N))
     matrix[:, : N - 1] = H
     matrix[:, N - 1] = -1.0
@@ -407,7 +429,7 @@ def eliminate(H, C, at, coupled):
         found[:, : N - 1] = C
         found[:, N - 1] = at
         substitute(matrix, order, found)
-    else:
+    else:  # B stays 0: one right side instead of N
         one = at.reshape(N, 1).copy()
         substitute(matrix, order, one)
         found[:, N - 1] = one[:, 0]
@@ -421,8 +443,8 @@ def strain_by_shear(T, C, B, coupled):
     The pressure is not fixed: it follows q by p = a - B q.
 
     T, C : matrices (N, N - 1), strain by shear and, with the opposite sign, by pressure.
-    B : elimination of p, (N, N), of :func:`eliminate`.
-    coupled : bool, whether C is not 0.
+    B : elimination of p, (N, N), of :func:`eliminate`: B and, in the last column, a.
+    coupled : bool, whether C is not 0; else neither C nor B is read.
     Returns (N, N): the factors of q in the first N - 1 columns, u' for q = 0 in the last.
     """
     N = B.shape[0]
@@ -434,7 +456,7 @@ def strain_by_shear(T, C, B, coupled):
             row = S[i]
             for k in range(N - 1):
                 part = C[i, k]
-                other = B[k]
+                other = B[k]  # p_k = a_k - B_k q; a_k is the last number of the row
                 for j in range(N - 1):
                     row[j] += part * other[j]
                 row[N - 1] -= part * other[N - 1]
@@ -497,13 +519,14 @@ def pressure_and_strain(S, B, q, p, strain):
     for i in range(n + 1):
         own = B[i]
         row = S[i]
+        # column n is the part without shear: p = a - B q, u' = u'(0) + S q
         value = own[n]
         slope = row[n]
         for j in range(n):
             value -= own[j] * q[j]
             slope += row[j] * q[j]
         strain[i] = slope
-        if i < n:
+        if i < n:  # the last row is that of g
             p[i] = value
         else:
             g = value
@@ -539,14 +562,14 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
         which = -1
         for i in range(kept, n):
             new[i] = zone[i]
-            slip = d - strain[i + 1]
+            slip = d - strain[i + 1]  # in the element ahead of the node, as in solve_zones
             wrong = 0.0
             if zone[i] == 0.0:
                 over = abs(q[i]) - mu * p[i] * (1.0 + _ROUNDING)
                 if over > 0.0:
                     new[i] = 1.0 if q[i] > 0.0 else -1.0
                     wrong = over / max(mu * abs(p[i]), 1e-300)  # not divided by a pressure of 0
-            elif slip * zone[i] < -_ROUNDING * scale:
+            elif slip * zone[i] < -_ROUNDING * scale:  # never where ``scale`` is 0
                 new[i] = 0.0
                 wrong = abs(slip) / scale
             if wrong > worst:

@@ -159,6 +159,7 @@ def traction_over_mu(position, v, u, L, D, law):
         traction = 1.0 - w * w * value
         if not _cancels(traction, D, L):
             return min(traction, 1.0)
+    # The other end of the interval is 2 u/L = v/(1 + x), with x = L/w - 1 = D/w.
     value, _, secant, _ = H_over_F2_secants(position, locate_row(2.0 * u / L, law), v, D / w, law)
     return D * ((2.0 * L - D) * value - v * L * secant)
 
@@ -193,6 +194,7 @@ def friction_reserve(position, v, L, D, law):
     0.0 in full slip (L <= D), and where L or D is NaN.
     """
     w = L - D
+    # 1 at D = 0, where L^2 H/F^2 = 1 but for rounding, which may leave more; 0 for a NaN too
     return min(w * w * H_over_F2(position, v, law)[0], 1.0) if w > 0.0 else 0.0
 
 
@@ -214,6 +216,8 @@ def stick_fraction(position, v, lam, L, D, law):
     w = L - D
     if not w > 0.0:  # full slip, or NaN
         return 0.0
+    # beta = eta/zeta with eta = (eta/F)/v, v = 2 u/w and zeta = lam/(2 u): u cancels, so that it
+    # holds at u = 0 too.  At D = 0 the whole contact sticks, exactly.
     return min(eta_over_F(position, v, law) * w / lam, 1.0) if D > 0.0 else 1.0
 
 
@@ -242,12 +246,13 @@ def traction_slopes(u, L, dL, D, law):
     value, slope = H_over_F2(position, v, law)
     w_slope = value - 0.5 * v * slope  # A
     if D < SMALL_CREEP * L or _cancels(1.0 - w * w * value, D, L):
-        x = D / w
+        x = D / w  # v/v1 - 1
         v1 = 2.0 * u / L
         _, _, secant, slope_secant = H_over_F2_secants(position, locate_row(v1, law), v, x, law)
         # With f = H/F^2: from L^2 f(2 u/L) = 1 follows dL/du = -f'/A at v1, so that A dL + f' of
         # the plain formula is a difference of values at v and v1, which is formed by mean slopes.
         step = v1 * x  # v - v1
+        # f' and A at v1, from the values at v and the mean slopes between
         slope_1 = slope - slope_secant * step
         A_1 = value - secant * step - 0.5 * v1 * slope_1
         over_u = step * (
@@ -276,7 +281,8 @@ def signed_creep(L, free_creep, asymmetry, state, law):
     gives inf or -inf; NaN where the creepage is NaN, or ``free_creep`` of a cover.
     """
     slip, delta = slip_and_creepage(state)
-    # D of half-spaces, which that of a cover replaces.
+    # D of half-spaces, which that of a cover replaces.  delta_star is formed by the operations of
+    # the field delta_star, in their order: a creepage that equals this field slips fully, exactly.
     full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
     D = np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
     return creep_of_state(D, delta, L, free_creep, asymmetry, state, law.cover_rows)
@@ -326,8 +332,11 @@ def Q_slopes(u, L, dL, D, state, law):
         over_u, over_D, D, locate_row(u, law), u, L, dL, state, law.cover_rows
     )
     # Q = +-mu |Q|/mu with D = 2 kappa |delta|/mu and u = kappa |V|; delta = omega/V - 1 at fixed V.
+    # ``over_delta`` is the slope for V > 0; for V < 0 Q has the sign of -delta, and the slope the
+    # opposite sign: dQ/domega = (dQ/ddelta)/V is over_delta/|V| for both.
     over_delta = 2.0 * state.kappa * over_D
     over_omega = over_delta / abs(state.V)
+    # The sign of Q, which is that of D, times that of du/dV.
     over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
     over_V = slope_over_speed(over_V, over_delta, free_creep_and_slopes(u, law)[1], law.cover_rows)
     if state.creep_is_omega:  # d delta/dV = -omega/V^2 = -(1 + delta)/V at fixed omega
@@ -340,7 +349,8 @@ def traction_on_moments(pairs, functions, Q, state, cover_rows):
     """Return what the traction changes in the rolling moments of a state, as
     :class:`.cover_law.MomentChange`.
 
-    pairs : of :func:`.cover_law.pairs_at` at the speed.
+    pairs : :class:`.cover_law.Pairs` at the speed (:func:`.cover_law.pairs_at`); not read for
+        half-spaces.
     functions : :class:`.law_functions.LengthAndMoment` at that speed, of which L and dL are read.
     Q : float, traction of the state, dimensionless.
     state : :class:`.law_record.State` of numbers, of which kappa and mu are read.
@@ -368,18 +378,20 @@ def moment_slope(change_dQ, slope):
     change_dQ : float, derivative of :class:`.cover_law.MomentChange` in Q; 0 of half-spaces.
     slope : float, slope of Q over the same variable; it may be infinite at rest.
     """
+    # without the test the 0 of half-spaces times an infinite slope would be NaN
     return change_dQ * slope if change_dQ != 0.0 else 0.0
 
 
 @inline_kernel
 def moment_slope_over_V(change_du, change_dQ, dQ_dV, state):
-    """Return what the traction adds to dM/dV of a body, dimensionless.
+    """Return what the traction adds to dM/dV of a body, or of both, a float, dimensionless.
 
     change_du, change_dQ : floats, derivatives of :class:`.cover_law.MomentChange` of the body over
     u and in Q.
     dQ_dV : float, slope of the traction, at fixed creepage or omega.
     state : :class:`.law_record.State` of numbers, of which kappa and the sign of V are read.
     """
+    # du/dV = kappa with the sign of V, at fixed Q; then Q changes with V at fixed u
     return np.copysign(state.kappa, state.V) * change_du + moment_slope(change_dQ, dQ_dV)
 
 
@@ -435,6 +447,7 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
     for k in range(begin, end):
         c = np.uint64(k)
         position = locate_row(scratch[arguments + c], laws[k % len(laws)])
+        # the bits of the int, not its value: :func:`_position` reads them as an int again
         scratch[positions + c] = bits_to_float(position.row)
         scratch[positions + _T + c] = position.t
         scratch[positions + _DT_DX + c] = position.dt_dx
@@ -473,7 +486,8 @@ def _write_other_fields(n, c, law, scratch, request):
     full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length divided by l0), zeta (half the
     transit time divided by T_ref), epsilon (shift of the contact ahead of the axis, in half contact
     lengths), beta (stick zone divided by the contact length), dQ_dV, dQ_ddelta, dQ_domega, dM_dV,
-    and M of half-space and cylinder with their slopes in V.
+    dM_ddelta and dM_domega, M of half-space and cylinder with their slopes in V and omega, and
+    factors and excesses by which shear acts back on both (:func:`_write_reaction`).
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta
     and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded
@@ -491,7 +505,7 @@ def _write_other_fields(n, c, law, scratch, request):
     write_field(to.delta, slip_and_creepage(state)[1], n, request)
     write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
     if max(to.delta_minus, to.delta_plus) >= 0:
-        # delta_0, delta_star and c: the onsets are delta_0 + delta_star (c -+ 1).
+        # The onsets are delta_0 + delta_star (c -+ 1): d = -1 and 1 in d + c d^2 of cover_law.
         middle = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
         star = 0.5 * state.mu / state.kappa * L
         shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
@@ -502,13 +516,17 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
     if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
         lam, epsilon = lam_and_epsilon(position, u, law)
+        # beta is formed with lam of the contact without traction; lam itself is corrected below
         write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
-        Q = -scratch[_Q + c] if scratch[_V + c] < 0.0 else scratch[_Q + c]  # as of the mirror image
+        # Q in the direction of V, as length_change takes it; of half-spaces it is not read, and the
+        # scratch has none
+        Q = -scratch[_Q + c] if scratch[_V + c] < 0.0 else scratch[_Q + c]
         lam_change, epsilon_change = length_change(Q, position, u, law.cover_rows)
         lam = lam + lam_change
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon + epsilon_change, n, request)
+    # rows of fields that are not requested are -1, so that max tells whether any is
     slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
     bodies = max(to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
     bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
@@ -536,11 +554,14 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
     law : :class:`.law_record.Law` of the material, of which L is read.
     cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written: nobody asks
     for it.
-    request : :class:`.law_record.Request` of states and quantities.
+    request : :class:`.law_record.Request` of states and quantities; ``out`` gets the factors of Q
+        (``reaction_half_space``, ``reaction_cylinder``) and of Q |Q|/mu (``excess_...``) that are
+        subtracted from M of a body, dimensionless, of either sign.
     Returns nothing.
     """
     if cover_rows is not None:
         to = request.to
+        # a row above -1 among the four: one is requested
         if (
             max(
                 to.reaction_half_space,
@@ -565,8 +586,14 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
 def _write_body_moments(n, c, law, cover_rows, scratch, request):
     """Write the moments of both bodies, of those that are requested.
 
-    n, c, law, scratch, request : as of :func:`_write_other_fields`.
+    n : int, index of the state in the columns of ``request.out``, >= 0; not checked.
+    c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
+    law : :class:`.law_record.Law` with the material of the state selected, with rows of the moments
+        of the bodies.
     cover_rows : ``law.cover_rows``; None of half-spaces, whose moments do not depend on Q.
+    scratch : of it u, the position of u, kappa and V are read; of a cover Q, mu, and the factors
+        and excesses of :func:`_write_cover` too.
+    request : :class:`.law_record.Request`; ``out`` gets both moments, in units of P R.
     Returns nothing.
     """
     u = scratch[_U + c]
@@ -576,6 +603,7 @@ def _write_body_moments(n, c, law, cover_rows, scratch, request):
     half_space, cylinder, _, _ = body_moments(position, u, law)
     half_space *= factor
     cylinder *= factor
+    # M of a body falls by Q (factor + excess |Q|/mu); numbers of the cylinder follow after _T
     if cover_rows is not None:
         Q = scratch[_Q + c]
         used = abs(Q) / scratch[_MU + c]
@@ -589,9 +617,15 @@ def _write_body_moments(n, c, law, cover_rows, scratch, request):
 def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     """Write the slopes of Q and of the moments, of those that are requested.
 
-    n, c, law, scratch, request : as of :func:`_write_other_fields`.
+    n : int, index of the state in the columns of ``request.out``, >= 0; not checked.
+    c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
     bodies : bool, whether a slope of the moment of one body is requested.
     slopes_of_Q : bool, whether a slope of Q is requested, or of a moment of a cover.
+    law : :class:`.law_record.Law` with the material of the state selected; with ``bodies`` it has
+        rows of the moments of the bodies.
+    scratch : of it the state (kappa, mu, V, creep), u, the position of u, D and, of a cover, Q are
+        read; of half-spaces Q may be absent, as it has no effect.
+    request : :class:`.law_record.Request`; ``out`` gets the slopes, dimensionless.
     Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are
     0.
     """
@@ -602,6 +636,7 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     functions = length_and_moment(position, u, law)
     pairs = pairs_at(position, u, law.cover_rows)
     change = traction_on_moments(pairs, functions, scratch[_Q + c], state, law.cover_rows)
+    # 0 where no slope of Q is needed: of half-spaces they then multiply derivatives that are 0
     over_V = 0.0
     over_delta = 0.0
     over_omega = 0.0
@@ -652,17 +687,23 @@ def _is_cover(cover_rows):
 def _write_pairs(c, position, functions, cover_rows, scratch, request):
     """Store in the scratch what the rows of a cover give besides at the speed of a state.
 
-    c, scratch, request : as of :func:`_write_other_fields`.
+    c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
     position, functions : :class:`.law_functions.RowPosition` of u, and
-        :class:`.law_functions.LengthAndMoment` there.
+        :class:`.law_functions.LengthAndMoment` there, of which m and ``scale`` are read.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces, of which delta_0 = 0 alone is written.
+    scratch : (SCRATCH_SIZE,) doubles: u, kappa and V of the state are read.  Written are f and g at
+        _TOTAL, where a moment is requested f_c and g_c at _CYLINDER, and where M of both bodies is
+        requested M without traction at _M_WITHOUT; :func:`_write_cover` and
+        :func:`_write_moment_of_cover` read them.
+    request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
     if cover_rows is None:
         scratch[_FREE_CREEP + c] = 0.0
     else:
         u = scratch[_U + c]
+        # values alone, without derivatives; the second number of a pair is _T after the first
         total = total_at(position, u, cover_rows)
         scratch[_TOTAL + c] = total.first
         scratch[_TOTAL + _T + c] = total.second
@@ -672,6 +713,7 @@ def _write_pairs(c, position, functions, cover_rows, scratch, request):
             scratch[_CYLINDER + _T + c] = cylinder.second
         if request.to.M >= 0:
             state = _state(c, scratch, request)
+            # as in _write_moment_of_half_space; Q is not known yet
             factor = moment_factor(position, u, functions.scale, state)
             scratch[_M_WITHOUT + c] = factor * functions.m
 
@@ -683,18 +725,24 @@ def _write_cover(c, cover_rows, scratch, request):
 
     No polynomial is evaluated here, so that a loop over states becomes vector instructions.
 
-    c : unsigned int, column of the scratch.
-    cover_rows : as of :func:`_write_pairs`; of half-spaces nothing is written.
-    scratch, request : as of :func:`_write_other_fields`.
+    c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
+    cover_rows : of any cover among those of the block: it is only asked whether it is None, of
+        half-spaces, and then nothing is written; no number of it is read.
+    scratch : (SCRATCH_SIZE,) doubles: kappa, mu, L, f and g of the state are read, and f_c and g_c
+        where a moment is requested.  2 kappa delta_0 and c are written, and where a moment is
+        requested the factors and excesses of :class:`.cover_law.Reaction` of both bodies.
+    request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
     if cover_rows is not None:
         total = _values(scratch[_TOTAL + c], scratch[_TOTAL + _T + c])
+        # of an earlier state where no moment is requested: nothing below reads it then
         cylinder = _values(scratch[_CYLINDER + c], scratch[_CYLINDER + _T + c])
         pairs = Pairs(total, cylinder)
         mu = scratch[_MU + c]
         L = scratch[_L + c]
         scratch[_FREE_CREEP + c] = total.first
+        # 0 for the derivatives of L, here and below: values alone are read, which do not need them
         scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
         if _asks_for_moments(request):
             reaction = shear_reaction(pairs, scratch[_KAPPA + c], mu, L, 0.0, cover_rows)
@@ -748,10 +796,16 @@ def _write_moment_of_cover(Q, n, c, cover_rows, scratch, request):
     requested.
 
     Q : float, traction, dimensionless.
-    n, c, scratch, request : as of :func:`_write_other_fields`; the entry of Q is written.
-    cover_rows : ``cover_rows`` of the law; None for half-spaces, of which nothing is written.
+    n : int, index of the state in the columns of ``request.out``, >= 0; not checked.
+    c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
+    cover_rows : of any cover among those of the block: it is only asked whether it is None, of
+        half-spaces, of which nothing is written.
+    scratch : (SCRATCH_SIZE,) doubles: mu, M without traction, and the factors and excesses of Q
+        (:func:`_write_cover`) are read, and Q is written.
+    request : :class:`.law_record.Request`; M, in units of P R, is written into ``out``.
     Returns nothing.
     """
+    # M = M without traction - Q (factor + excess |Q|/mu), summed over both bodies
     if cover_rows is not None:
         scratch[_Q + c] = Q
         if request.to.M >= 0:
@@ -825,6 +879,8 @@ def contact_loop(laws, request, scratch, count):
                     scratch,
                     request,
                 )
+            # ``laws[0]`` for all states in this loop: of the law it is only asked whether it is a
+            # cover, and all are or none is
             for k in range(begin, end):
                 c = np.uint64(k)
                 _write_cover(c, laws[0].cover_rows, scratch, request)
@@ -839,6 +895,7 @@ def contact_loop(laws, request, scratch, count):
                 scratch[_D + c] = D
                 scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
             _write_positions(_STICK, _STICK_POSITION, begin, end, laws, scratch)
+            # of a cover Q is computed in any case, as M, lam and epsilon depend on it
             if to.Q >= 0 or _is_cover(laws[0].cover_rows):
                 for k in range(begin, end):
                     c = np.uint64(k)

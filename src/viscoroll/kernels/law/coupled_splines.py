@@ -149,9 +149,10 @@ def _interval(begin, count, step, x, table):
     """Return the :class:`Interval` of a coordinate; outside of the nodes it is the first or the
     last.
 
-    begin, count : ints, where the nodes begin in the vector, and their number.
-    step : int, index in the head of the step of the axis: U_STEP or T_STEP.
-    x : float, coordinate, ln u or t.
+    begin, count : ints, where the nodes begin in the vector, and their number, >= 2.
+    step : int, index in the head of the step of the axis: U_STEP or T_STEP; the inverse of the step
+        follows it.
+    x : float, coordinate, ln u or t, not a NaN.
     table : vector of the module.
     """
     # Indices of the vector are unsigned: numba would test signed ones for negative numbers.
@@ -162,6 +163,8 @@ def _interval(begin, count, step, x, table):
         # has all its digits.
         middle = count >> 1
         y = (x - table[np.uint64(begin + middle)]) * inverse
+        # From the first node to the last interval, count - 2: its middle, count - 1.5, is rounded
+        # down to it, while the last node would begin an interval that does not exist.
         left = np.floor(min(max(y, -np.float64(middle)), count - 1.5 - middle))
         return Interval(middle + np.int64(left), h, inverse, y - left, left + 1.0 - y)
     # Else it is found by bisection: ``low`` is its left node, ``span`` the intervals left.
@@ -169,6 +172,8 @@ def _interval(begin, count, step, x, table):
     span = count - 1
     while span > 1:
         half = span >> 1
+        # A product in place of a branch.  Of an odd span the left part counts one interval too
+        # many, which no later test reaches.
         low += half * np.int64(x >= table[np.uint64(begin + low + half)])
         span -= half
     left = table[np.uint64(begin + low)]
@@ -189,6 +194,7 @@ def _cubic(first, at, dx):
     s = at.s
     r = at.r
     slope = 6.0 * s * r * dx * at.inverse  # derivative of a1, and minus that of a0
+    # b0 and b1 multiply slopes, and have the factor h; their derivatives over the coordinate none
     return Weights(
         first=first,
         a0=(1.0 + 2.0 * s) * r * r,
@@ -209,6 +215,8 @@ def locate_speed(u, table):
     u : float, kappa |V|, >= 0, which may be infinite.
     table : vector of the module.
     """
+    # Row 0 is the limit of u = 0, row n the node n - 1 of ln u, the last row the limit of u
+    # infinite.  Outside of the nodes two rows are weighted without their slopes.
     rows = np.int64(table[ROWS])
     if u <= table[FIRST]:  # linear in u from row 0, the limit of u = 0
         part = u / table[FIRST]
@@ -238,10 +246,11 @@ def edge_at(name, u, speed, table):
     """Return an edge, one of the creeps of the module, as :class:`Edge`.
 
     name : int, MIDDLE, ONSET, ONSET + 1 or FREE.
-    u : float, kappa |V|.
+    u : float, kappa |V|, >= 0, which may be infinite.
     speed : :class:`Weights` of u, of :func:`locate_speed`.
     table : vector of the module.
     """
+    # edges have rows of EDGE_COUNT pairs, value and slope; the next row is 2 EDGE_COUNT further
     at = np.int64(table[EDGES]) + (speed.first * EDGE_COUNT + name) * 2
     # Values f and slopes g over ln u in the two rows of the interval.
     f0 = table[np.uint64(at)]
@@ -256,6 +265,7 @@ def edge_at(name, u, speed, table):
         return Edge(value, slope, 0.0)
     if u >= table[LAST]:
         return Edge(value, slope, -2.0 * slope / u)
+    # row ``first`` is the node first - 1 of ln u, as row 0 is the limit of u = 0
     left = table[np.uint64(HEAD + speed.first - 1)]
     h = table[np.uint64(HEAD + speed.first)] - left
     s = (np.log(u) - left) / h
@@ -284,7 +294,7 @@ def locate_creep(w, sigma, table):
         square = min(max(w, 0.0), 1.0) * (1.0 + root) / (1.0 + root + root * root)
         t = max(np.sqrt(square), _MIDDLE_DISTANCE)
         slope = 1.0 / (3.0 * t * root)
-    if rest == 0.0:
+    if rest == 0.0:  # from the onset on exactly the outer node, and nothing depends on w
         t = 1.0
         slope = 0.0
     begin = np.int64(table[T_BEGIN])
@@ -333,6 +343,7 @@ def _corners(rows, nodes):
     """
     a0, a1, b0, b1 = rows
     c0, c1, d0, d1 = nodes
+    # each vector in the order of a JET: value, slopes over ln u and over t, mixed derivative
     return (
         pack(a0 * c0, b0 * c0, a0 * d0, b0 * d0),
         pack(a0 * c1, b0 * c1, a0 * d1, b0 * d1),
@@ -349,6 +360,7 @@ def cell_at(speed, place, table):
     place : :class:`Weights` of the nodes, of :func:`locate_creep`.
     table : vector of the module.
     """
+    # a field is ROWS rows of NODES nodes of JET numbers, and fields follow each other
     down = np.int64(table[NODES]) * JET
     return Cell(
         at=np.int64(table[FIELDS]) + speed.first * down + place.first * JET,
@@ -362,8 +374,12 @@ def cell_at(speed, place, table):
 
 @inline_kernel
 def _nodes_of(name, cell, table):
-    """Return what a field has at the four nodes of a cell, vectors; arguments as of
-    :func:`field_at`.
+    """Return what a field has at the four nodes of a cell, four vectors of four in the order of
+    ``corners`` of :class:`Cell`.
+
+    name : int, number of the field, TRACTION to FRICTION, as far as the table has it; not checked.
+    cell : :class:`Cell` of :func:`cell_at`.
+    table : vector of the module.
     """
     at = cell.at + name * cell.plane
     below = at + cell.down
@@ -372,7 +388,12 @@ def _nodes_of(name, cell, table):
 
 @inline_kernel
 def _combined(weights, nodes):
-    """Return the sum of weights of four nodes times what a field has there, vectors both."""
+    """Return the sum of weights of four nodes times what a field has there, a float.
+
+    weights : four vectors of four, of :func:`_corners`.
+    nodes : four vectors of four in the same order, of :func:`_nodes_of`.
+    """
+    # two products that do not wait for one another, then the four numbers of the sum
     a, b, c, d = unpack(
         fma4(nodes[0], weights[0], nodes[1] * weights[1])
         + fma4(nodes[2], weights[2], nodes[3] * weights[3])
@@ -382,7 +403,12 @@ def _combined(weights, nodes):
 
 @inline_kernel
 def value_at(name, cell, table):
-    """Return the value of a field for w >= 0; arguments as of :func:`field_at`."""
+    """Return the value of a field, a float, for w >= 0; for w < 0 that of w = 0.
+
+    name : int, number of the field, TRACTION to FRICTION, as far as the table has it; not checked.
+    cell : :class:`Cell` of :func:`cell_at`.
+    table : vector of the module.
+    """
     return _combined(cell.corners, _nodes_of(name, cell, table))
 
 
@@ -396,6 +422,7 @@ def field_at(name, w, cell, table):
     table : vector of the module.
     """
     nodes = _nodes_of(name, cell, table)
+    # the weights of a slope: those of derivatives in one direction, of values in the other
     dw = _combined(_corners(_values(cell.speed), _slopes(cell.place)), nodes)
     return FieldValue(
         _combined(cell.corners, nodes) + min(w, 0.0) * dw,
@@ -429,6 +456,7 @@ def place_of(D, u, speed, table):
     """
     middle = edge_at(MIDDLE, u, speed, table)
     sigma = 1.0 if D >= middle.value else -1.0
+    # ONSET + 0 is that of sigma = -1, ONSET + 1 that of 1; w and ``width`` have the sign of sigma
     onset = edge_at(ONSET + np.int64(D >= middle.value), u, speed, table)
     width = onset.value - middle.value
     w = (D - middle.value) / width

@@ -159,10 +159,13 @@ def find_spots(zone, place, width, weight, spots):
     contact; return their number, an int.
 
     zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
-    width, weight : floats, of each spot, as in :func:`.contact_elements.make_mesh`.
-    spots : (MOST_SPOTS, 3), parameter, width and weight, written; further edges have none.
+    width, weight : floats, of each spot: width > 0 in the parameter, and number of elements in a
+        factor of e of the distance from it (:func:`.contact_elements.make_mesh`).
+    spots : (MOST_SPOTS, 3), parameter, width and weight, written from the first row on, from the
+        rear edge to the front edge; further edges than it has rows are left out.
     """
     used = 0
+    # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
     for i in range(zone.size - 1):
         if zone[i] != zone[i + 1] and used < spots.shape[0]:
             # The edge counts as at the node that slips, of two that slip at the rear one.
@@ -196,12 +199,14 @@ def gather(row, contact, c, spots):
     front edge; return the number of edges, an int.
 
     row : :class:`Row`, of which ``layer`` is read.
-    contact : :class:`Contact`, whose mesh is written and whose zones are carried to it.
+    contact : :class:`Contact`, whose mesh (``nodes``, ``at``, ``place``) is written, and whose
+        zones are carried to it; before, ``place`` and ``zone`` are those of the last mesh.
     c : float, half length divided by l0, > 0.
     spots : (MOST_SPOTS, 3), written: the edges first, then the layer if it is thinner than an
         element.
     """
     count = contact.at.size
+    # widths are in the parameter, of which an element of an equal mesh has 1/count
     edges = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
     used = edges
     # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
@@ -212,7 +217,7 @@ def gather(row, contact, c, spots):
         spots[used, 1] = thin
         spots[used, 2] = WEIGHT_OF_LAYER
         used += 1
-    zone = contact.zone.copy()
+    zone = contact.zone.copy()  # of the old mesh, since make_mesh and carry_zones overwrite both
     place = contact.place.copy()
     make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
     carry_zones(zone, place, contact.place, contact.zone)
@@ -227,13 +232,14 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     contact : :class:`Contact`, mesh, matrices and tractions, written; its zones are a first guess.
     c : float, half length of the contact divided by l0, > 0.
     mu : float, coefficient of friction, > 0.
-    d : float, kappa times the creepage delta; infinite: full slip in the zones of ``contact``.
-    spots : (MOST_SPOTS, 3), refinements of the mesh at edges of zones, as in :func:`make_mesh`;
-        written, or with ``again`` read.
+    d : float, kappa times the creepage delta, of either sign; infinite, of any sign: full slip in
+        the zones of ``contact``.
+    spots : (MOST_SPOTS, 3), refinements of the mesh at edges of zones, parameter, width and weight
+        each (:func:`.contact_elements.make_mesh`): scratch, written unless ``again``.
     again : bool, whether the mesh of the previous call is kept and scaled to c.
     Returns three values: the status, an int, SOLVED, NO_ZONES or SINGULAR; the distance g of the
-    middle of the contact ahead of the axis, divided by l0; whether the edges of the zones lie
-    within OFF_SPOT elements of the refinements of the mesh.
+    middle of the contact ahead of the axis, a float, divided by l0; a bool, whether the edges of
+    the zones lie within OFF_SPOT elements of the refinements of the mesh, True in full slip.
     """
     count = contact.at.size
     edges = 0  # number of edges at which the mesh is refined; 0 where the mesh is kept
@@ -252,7 +258,9 @@ def solve_contact(row, contact, c, mu, d, spots, again):
             return SINGULAR, 0.0, True
         return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
     good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
-    found = np.empty((MOST_SPOTS, 3))  # edges of the zones of the solution
+    # Edges of the zones of the solution; width and weight, 1.0, are not read.  With a mesh that is
+    # kept (edges = 0) the result is of no use, and find_length does not wait for it.
+    found = np.empty((MOST_SPOTS, 3))
     centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
     for k in range(edges):
         centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
@@ -287,6 +295,7 @@ def stick_length(contact):
     contact : solved :class:`Contact`.
     Returns a float in [0, 1].
     """
+    # an element has the zone of the inner node behind it, as in slip_work
     found = 0.0
     for e in range(contact.at.size):
         if contact.zone[max(e - 1, 0)] == 0.0:
@@ -310,7 +319,8 @@ def split_powers(row, contact):
     They are its moment and the work of its strain, over V (docs/theory_covers.md, Powers).
 
     row : :class:`Row`, of which the kernels of the cylinder alone are read.
-    contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder.
+    contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder: they
+        do not belong to its tractions any more.
     Both are floats, in the units of the module.
     """
     assemble(row.own, row.own_instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
@@ -318,6 +328,7 @@ def split_powers(row, contact):
     N = contact.at.size
     slope = np.empty(N)
     strain = np.empty(N)
+    # H p + C q and T q - C p, as in contact_elements, of the part that the cylinder has in both
     for e in range(N):
         slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
         strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
@@ -336,7 +347,9 @@ def write_state(row, contact, c, g, mu, d, status, out):
     c, g : floats, half length, and distance of the middle ahead of the axis, divided by l0.
     mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
     status : int, status of the solution; a solution with tension becomes TENSION.
-    out : (COLUMNS,), written; lam = 2 c belongs to the load of the elements, not yet to LOAD.
+    out : (COLUMNS,), written but for columns 5 and 6: 0, lam; 1, epsilon; 2, Q/(mu P); 3, kappa M;
+        4, 2 kappa times the work of the strain; 7, beta; 8, status; 9, half length.  lam = 2 c
+        belongs to the load of the elements, not yet to LOAD.
     Returns the load of the elements, the integral of p, a float.
     """
     total, moment = moments(contact.nodes, contact.p)
@@ -346,12 +359,15 @@ def write_state(row, contact, c, g, mu, d, status, out):
     out[1] = g / c
     out[2] = traction / (mu * total)
     out[3] = g + moment / total
+    # In full slip d is not known here: q u' is integrated as it is, by the linear strain.
     if math.isinf(d):
         out[4] = 2.0 * product(contact.nodes, contact.at, contact.q, contact.strain) / total
     else:
         # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
         out[4] = 2.0 * (slip * traction - slip_work(contact, slip)) / total
     out[7] = stick_length(contact)
+    # The integral of negative pressure: that of inner node i counts for half of the two elements
+    # beside it, which lie between the nodes i and i + 2 of the mesh.
     if status == SOLVED:
         negative = 0.0
         for i in range(contact.p.size):
@@ -370,12 +386,15 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
 
     The mesh of each length is refined at the edges of the zones of the previous length.
 
-    row : :class:`Row`.
+    row : :class:`Row`, kernels of both bodies at one speed.
     contact : :class:`Contact`, written; its zones are the first guess.
-    c, slope : floats, first guesses of the half length and of d ln(load)/d ln(c).
-    mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
+    c, slope : floats, first guesses of the half length, divided by l0, > 0, and of d ln(load)/d
+        ln(c), > 0.
+    mu, d : floats, coefficient of friction, > 0; kappa times the creepage delta, infinite in full
+        slip.
     tolerance : float, largest relative error of the load.
-    out : (COLUMNS,), written, with a status other than SOLVED if no solution was found.
+    out : (COLUMNS,), the state, written but for columns 5 and 6, with a status other than SOLVED if
+        no solution was found.
     Returns (half length divided by l0, d ln(load)/d ln(c)), floats.
     """
     spots = np.empty((MOST_SPOTS, 3))
@@ -385,12 +404,14 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     error = 1.0  # ln(load/LOAD)
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
+        # after some meshes the last one is kept: else it could change from length to length
         status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
         total = write_state(row, contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
         # A load that is not above 0 counts as e times too small, so that the contact grows.
         error = math.log(total / LOAD) if total > 0.0 else -1.0
+        # The slope of a secant, bounded, or that of the caller where lengths are too close for one.
         if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
         if abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
@@ -401,7 +422,7 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     if not abs(error) < tolerance and out[8] == SOLVED:
         out[8] = NO_LOAD
     c *= math.exp(-error / slope)  # to first order, to the load LOAD
-    out[0] = 2.0 * c
+    out[0] = 2.0 * c  # the other columns are ratios, which are not corrected
     out[9] = c
     return c, slope
 
@@ -410,10 +431,16 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
 def finish_state(row, contact, out):
     """Write moment and work of the cylinder alone into a state.
 
-    row : :class:`Row`.
-    contact : the solved :class:`Contact` of the state; its matrices are overwritten.
-    out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written.
+    row : :class:`Row`, of which ``split`` and ``cylinder`` are read, and where both bodies deform
+        the kernels of the cylinder.
+    contact : the solved :class:`Contact` of the state; where both bodies deform its matrices are
+        overwritten by those of the cylinder.
+    out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written: kappa
+        M and 2 kappa times the work of the strain, of the cylinder.
+    Returns nothing.
     """
+    # kappa M of the cylinder alone, and 2 kappa times the work of its strain, per load; where one
+    # body alone deforms they are all of columns 3 and 4, or nothing
     if row.split:
         total, _ = moments(contact.nodes, contact.p)
         moment, work = split_powers(row, contact)
@@ -432,17 +459,19 @@ def full_slip(row, mu, sign, count, c, out):
     three elements: as a polynomial of the parameter of the mesh with coupling, where the strain
     varies like the root of the distance, else of the square of the parameter.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
     sign : float, 1.0 or -1.0, sign of the slip.
-    count : int, number of elements.
-    c : float, guess of the half length divided by l0.
-    out : (COLUMNS,), the state, written.
+    count : int, number of elements, at least 3.
+    c : float, guess of the half length divided by l0, > 0.
+    out : (COLUMNS,), the state, written, all columns.
     Returns (kappa times the creepage of the onset; d ln(load)/d ln(c)), floats.
     """
     contact = new_contact(count)
     contact.zone[:] = sign
+    # 2.0: the load of an elastic half-space grows as c^2
     _, slope = find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
+    # slip d - u' of the sign everywhere means sign d >= sign u' everywhere
     best = -np.inf
     for e in range(count):
         best = max(best, sign * contact.strain[e])
@@ -468,10 +497,12 @@ def full_slip(row, mu, sign, count, c, out):
 def move_edges(place, last, before, count, ahead):
     """Move the nodes of a mesh to the edges of zones that are extrapolated from two states.
 
-    place : parameters of the nodes, (N + 1,), changed; they stay where edges would meet.
+    place : parameters of the nodes, (N + 1,), ascending from 0 to 1, changed; they stay where edges
+        would meet.  The nodes themselves are not moved: :func:`gather` reads their parameters, at
+        which it carries zones and edges to the next mesh.
     last, before : edges of the last state and of the one before it, in column 0, (MOST_SPOTS, 3).
-    count : number of edges of both.
-    ahead : float, step to the next state divided by the step between the two.
+    count : int, number of edges of both, >= 0.
+    ahead : float, step to the next state divided by the step between the two, > 0.
     Returns nothing.
     """
     # Parameters of both ends and of the edges, before and after; those of nodes are interpolated.
@@ -491,15 +522,16 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
 
     The first guess of each state, zones and length, is extrapolated from the two before it.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
-    creeps : kappa times the creepage delta of each state, (n,); neighbours should be close.
-    at : coordinate of the states in which they change smoothly, ascending, (n,).
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
+    creeps : kappa times the creepage delta of each state, finite, (n,); neighbours should be close.
+    at : coordinate of the states in which they change smoothly, strictly ascending, (n,).
     count : int, number of elements.
-    c, slope : floats, guesses of the first half length and of d ln(load)/d ln(c).
-    apart : bool, whether each state starts from stick and the guess c instead, so that it does not
-        depend on the others.
-    out : (n, COLUMNS), written.
+    c, slope : floats, guesses of the first half length, divided by l0, and of d ln(load)/d ln(c),
+        > 0.
+    apart : bool, whether each state starts from stick and the guess c instead; that its mesh begins
+        with the nodes of the state before has no effect, as all its nodes stick.
+    out : (n, COLUMNS), written, all columns.
     Returns nothing.
     """
     contact = new_contact(count)
@@ -520,6 +552,7 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
         this = n % 2
         found[this] = find_spots(contact.zone, contact.place, 1.0, 1.0, edges[this])
         if 0 < n < creeps.size - 1:
+            # linear in ``at``: ln of the half length (column 9), and the edges if as many as before
             ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)
             guess *= (length / out[n - 1, 9]) ** ahead
             if found[0] == found[1]:
@@ -530,13 +563,13 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
 def rear_slip(row, contact, c, slope, mu, d, out):
     """Solve a state roughly, and return the directions of slip in the rear half of the contact.
 
-    row : :class:`Row`.
-    contact : :class:`Contact`, written.
-    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
-    mu, d : floats, coefficient of friction, kappa times the creepage delta.
-    out : (COLUMNS,), written.
-    Returns (whether a node there slips with sign +; with sign -; zone of the rear node, 0 in stick;
-    half length divided by l0).
+    row : :class:`Row`, kernels of both bodies at one speed.
+    contact : :class:`Contact`, written; its zones are the first guess.
+    c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
+    mu, d : floats, coefficient of friction, > 0, and kappa times the creepage delta, finite.
+    out : (COLUMNS,), scratch, written.
+    Returns (whether a node there slips with sign +, a bool; with sign -; zone of the rear inner
+    node, 1.0, -1.0 or 0.0 in stick; half length divided by l0).
     """
     c, _ = find_length(row, contact, c, slope, mu, d, _ROUGH_LOAD, out)
     plus = False
@@ -555,11 +588,11 @@ def touch_creep(row, mu, low, high, count, c, slope):
     an interval of creepages, it is the lower end of the interval if the rear edge slips with sign -
     there, else the upper end.  It is found by bisection on the zones.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
-    low, high : floats, kappa times the creepages of both onsets of full slip.
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
+    low, high : floats, kappa times the creepages of both onsets of full slip, ``low`` < ``high``.
     count : int, number of elements.
-    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
+    c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
     Returns a float between ``low`` and ``high``.
     """
     contact = new_contact(count)
@@ -595,16 +628,17 @@ def touch_creep(row, mu, low, high, count, c, slope):
 def solve_one(row, mu, d, count, c, slope, sign, out):
     """Solve one state and return its :class:`Contact`, with nodes and tractions.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
-    d : float, kappa times the creepage delta; infinite: full slip.
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
+    d : float, kappa times the creepage delta; infinite, of any sign: full slip of ``sign``.
     count : int, number of elements.
-    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
+    c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
     sign : float, 1.0 or -1.0, sign of full slip; not read otherwise.
-    out : (COLUMNS,), the state, written, but for moment and work of the cylinder.
+    out : (COLUMNS,), the state, written, but for moment and work of the cylinder, columns 5 and 6.
+        Its lam and half length are corrected to the load; the nodes of the contact are not.
     """
     contact = new_contact(count)
-    if math.isinf(d):
+    if math.isinf(d):  # the zones of full slip are given (solve_contact)
         contact.zone[:] = sign
     find_length(row, contact, c, slope, mu, d, _LOAD_ERROR, out)
     return contact

@@ -198,6 +198,7 @@ def _pair_at(offset, position, cover_rows):
     position : :class:`.law_functions.RowPosition` of u in the rows of the law, not beyond the last.
     cover_rows : vector of the numbers that only a cover has, as in the module; not None.
     """
+    # cover rows have a head shorter than a row: row 0 is directly behind it
     start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + offset
     first, second, first_slope, second_slope, first_curvature, second_curvature = (
         evaluate_short_pair(cover_rows, start, position.t)
@@ -219,12 +220,14 @@ def _limits_at(first, second, u, cover_rows):
     """Return two functions beyond the last row of the law, each a limit and a term in 1/u, as
     :class:`PairOverSpeed`.
 
-    first, second : int, indices in the head of their limits for u -> infinity.
-    u : float, kappa |V|, dimensionless, > 0.
+    first, second : int, indices in the head of their limits for u -> infinity; the coefficient of
+        1/u follows each.
+    u : float, kappa |V|, dimensionless, > 0 and finite.
     cover_rows : vector of the numbers that only a cover has, as in the module; not None.
     """
     first_change = cover_rows[first + 1] / u
     second_change = cover_rows[second + 1] / u
+    # of a + b/u: slope -b/u^2, curvature 2 b/u^3
     return PairOverSpeed(
         first=cover_rows[first] + first_change,
         second=cover_rows[second] + second_change,
@@ -305,15 +308,18 @@ def _relative_excess(total, mu, L, dL, ddL):
 def asymmetry_at(pairs, mu, L, dL, ddL, cover_rows):
     """Return the asymmetry c of the onsets of full slip, as :class:`OverSpeed`; 0 of half-spaces.
 
-    pairs : of :func:`pairs_at` at that speed.
-    mu, L, dL, ddL : as of :func:`_relative_excess`.
+    pairs : :class:`Pairs` at that speed, of which ``total`` is read.
+    mu : float, coefficient of friction, > 0.
+    L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u, dimensionless; with
+        dL = ddL = 0 the value alone has a meaning.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
     half-spaces.
     """
     if cover_rows is None:
         return OverSpeed(0.0, 0.0, 0.0)
     r = _relative_excess(pairs.total, mu, L, dL, ddL)
-    # c = -r share with share = 1/(1 + (2 r)^6); over_r and twice_over_r are its derivatives in r.
+    # c = -r share with share = 1/(1 + (2 r)^6); over_r and twice_over_r are the first and second
+    # derivative of c in r; ``power`` is (2 r)^6.
     square = 4.0 * r.value * r.value
     power = square * square * square
     share = 1.0 / (1.0 + power)
@@ -354,9 +360,13 @@ def pairs_at(position, u, cover_rows):
 
 @inline_kernel
 def total_at(position, u, cover_rows):
-    """Return f and g of both bodies together, as :class:`PairOverSpeed`; arguments as of
-    :func:`pairs_at`, ``cover_rows`` not None.
+    """Return f and g of both bodies together, as :class:`PairOverSpeed`.
+
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
     """
+    # rows have the sum, the head both parts
     if position.row < 0:
         base = _limits_at(FREE_HALF_SPACE_LIMIT, EXCESS_HALF_SPACE_LIMIT, u, cover_rows)
         cylinder = _limits_at(FREE_CYLINDER_LIMIT, EXCESS_CYLINDER_LIMIT, u, cover_rows)
@@ -366,8 +376,12 @@ def total_at(position, u, cover_rows):
 
 @inline_kernel
 def cylinder_at(total, position, u, cover_rows):
-    """Return f_c and g_c as :class:`PairOverSpeed`; ``total``: of :func:`total_at`; other arguments
-    as of :func:`pairs_at`, ``cover_rows`` not None.
+    """Return f_c and g_c, the parts of the cylinder in f and g, as :class:`PairOverSpeed`.
+
+    total : :class:`PairOverSpeed` of f and g at the speed, of :func:`total_at`.
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
     """
     # 0, 1 or -1; interpolated over the thickness it has rounding, so that it is compared with
     # +-0.5.
@@ -391,7 +405,9 @@ def reduced_creep(creep, asymmetry):
     """
     # The root of c d^2 + d = creep that is creep for c = 0, in the form without cancellation.  Both
     # cases are computed, so that a loop becomes vector instructions.
+    # Far in full slip the root has no real value: 0 keeps NaN away, as ``within`` is not read.
     within = 2.0 * creep / (1.0 + np.sqrt(max(1.0 + 4.0 * asymmetry * creep, 0.0)))
+    # the onsets, d = 1 and -1, have the creeps c + 1 and c - 1; creep - c continues d from there
     full_slip = abs(creep) >= abs(asymmetry + np.copysign(1.0, creep))
     return creep - asymmetry if full_slip else within
 
@@ -463,7 +479,7 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
 
     The excess g is limited by g/(1 + (g/s)^4)^(1/4) with s = mu L/2, both parts in proportion.
 
-    pairs : of :func:`pairs_at` at that speed.
+    pairs : :class:`Pairs` at that speed.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     mu : float, coefficient of friction, > 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope over u, dimensionless.
@@ -487,7 +503,8 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
     on_base = 0.5 / kappa
     on_cylinder = 1.0 / (2.0 * kappa + total.first)
     on_cylinder_slope = -on_cylinder * on_cylinder * total.first_slope
-    # g/s is r of the module: the limiter is (1 + r^4)^(-1/4).
+    # g/s is r of the module: the limiter is (1 + r^4)^(-1/4), with the slope -r^3 r' (1 + r^4)^-1
+    # times itself; values alone need no slope of L, which callers then give as 0.
     ratio = _relative_excess(total, mu, L, dL, 0.0)
     cube = ratio.value * ratio.value * ratio.value
     rest = 1.0 / (1.0 + cube * ratio.value)
@@ -581,7 +598,8 @@ def creep_of_state(D, delta, L, free_creep, asymmetry, state, cover_rows):
     """
     if cover_rows is None:
         return D
-    # 0 exactly where the creepage is that of free rolling, as a field gives it
+    # 0 exactly where the creepage is that of free rolling, as a field gives it: delta_0 is formed
+    # by the operations of the field, in their order
     beyond = delta - 0.5 * free_creep / state.kappa
     d = reduced_creep(2.0 * state.kappa * _inverse_width(state.mu, L) * beyond, asymmetry)
     return np.copysign(np.inf if abs(d) >= 1.0 else L * abs(d), -d if state.V < 0.0 else d)
@@ -636,7 +654,7 @@ def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
 def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
     """Return what the creepage of free rolling adds to the kinematics of partial slip at one speed.
 
-    pairs : of :func:`pairs_at` at that speed.
+    pairs : :class:`Pairs` at that speed, of which f of ``total``, with its derivatives, is read.
     u : float, kappa |V|, dimensionless, >= 0.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     k : float, mu/(2 kappa), dimensionless, > 0.
@@ -650,6 +668,8 @@ def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
     if cover_rows is None:
         return FreeCreep(-0.0, -0.0, -0.0)
     value, slope, second_derivative = free_creep_of(pairs)
+    # with u delta_0 = u f/(2 kappa): its derivatives over u are (f + u f')/(2 kappa) and
+    # (2 f' + u f'')/(2 kappa); d(V delta_0)/dV is the first of them
     factor = 0.5 / kappa
     return FreeCreep(
         factor * value,
@@ -691,11 +711,12 @@ def reduced_kinematics(d, u, L, dL, ddL, asymmetry, cover_rows):
     """
     uL_slope = L + u * dL  # A
     uL_curvature = 2.0 * dL + u * ddL  # its derivative over u
-    if cover_rows is None:
+    if cover_rows is None:  # S = L d
         return ReducedKinematics(d, L, dL, 0.0, d, 1.0, uL_curvature * d)
     c = asymmetry
     creep = creep_of(d, c.value, cover_rows)
-    # d(u S)/du = A (d + c d^2) + u L c' d^2, divided by A; ``bend`` is its derivative.
+    # d(u S)/du = A (d + c d^2) + u L c' d^2, divided by A; ``bend``, not divided, is its derivative
+    # over u, A' (d + c d^2) + (2 A c' + u L c'') d^2.  d^2 is ``creep.bend``, 2 d ``bend_slope``.
     aside = u * c.slope * L / uL_slope
     return ReducedKinematics(
         value=creep.value,
@@ -716,9 +737,10 @@ def creep_turn(creep, rate, cover_rows):
 
     The equation of d has dS/dd V d' on its left side: its derivative in d contains d^2S/dd^2 V d'.
 
-    creep : :class:`ReducedKinematics`.
+    creep : :class:`ReducedKinematics` at d, of which ``turn``, d^2S/dd^2, is read.
     rate : float, V d', dimensionless.
-    cover_rows : as of :func:`reduced_kinematics`.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces.
     """
     return -0.0 if cover_rows is None else -creep.turn * rate
 
@@ -759,9 +781,11 @@ def _interpolate(source, marks, first, to, out, count):
     law_size = (
         (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
     )
+    # addresses count bytes, 8 for a double
     weights = floats_at(source.weights + 8 * source.law_count * marks[SELECTED], source.law_count)
     for k in range(count):
         out[to + k] = 0.0
+    # node by node, each in the order of memory
     for j in range(source.law_count):
         law = floats_at(marks[_LAWS] + 8 * (j * law_size + first), count)
         weight = weights[j]
@@ -791,7 +815,9 @@ def select_cover(n, source):
         octaves = integers_at(source.octaves, 2 * source.cover_count)
         marks[_LAWS] = octaves[2 * index]
         count = octaves[2 * index + 1]
-        marks[ROW_COUNT] = count
+        marks[ROW_COUNT] = count  # before the interpolation, which reads it
+        # the head of the rows, up to what belongs to the makers, and then the cover rows, which
+        # follow the head and all rows in the law of a node
         _interpolate(source, marks, 0, 0, floats_at(source.rows, MAKER_NUMBERS), MAKER_NUMBERS)
         size = COVER_FRONT_SIZE + COVER_ROW_SIZE * count
         _interpolate(

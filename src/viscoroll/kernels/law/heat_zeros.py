@@ -56,13 +56,16 @@ def _rest(n, r, request, law):
     """Return f, K, and its slope df/dr, dimensionless, floats.
 
     n : int, index of the state.
-    r : float, rise of the temperature above ambient, K.
-    request : :class:`HeatRequest`, the states.
-    law : law of the material.
+    r : float, rise of the temperature above ambient, K, such that the temperature is above the
+        pole.
+    request : :class:`HeatRequest`, the states, of which x_hot, ambient, power, pole and slope are
+        read.
+    law : :class:`.law_record.Law` of the material, with all rows, of which those of M/V are read.
     """
     above = request.ambient[n] - request.pole + r  # temperature above the pole, K
     u = np.exp2(request.x_hot[n] + request.slope / above)
     functions = length_and_moment(locate_row(u, law), u, law)
+    # u = 2^x with dx/dr = -slope/above^2
     du_dr = -np.log(2.0) * u * request.slope / (above * above)
     # kappa M = u m scale, and d(kappa M)/du = d_um (law_functions.LengthAndMoment).
     return (
@@ -77,14 +80,16 @@ def _find_zero(n, low, high, r, falling, request, law):
 
     n : int, index of the state.
     low, high : floats, rises between which f changes its sign, K.
-    r : float, first guess, K.
-    falling : bool, whether f > 0 at ``low`` and < 0 at ``high``; else the reverse.
-    request, law : as in :func:`_rest`.
+    r : float, first guess, K; outside of the bracket the middle is taken.
+    falling : bool, whether f > 0 at ``low`` and < 0 at ``high``; else the reverse; not checked.
+    request : :class:`HeatRequest`, the states.
+    law : :class:`.law_record.Law` of the material.
     """
     if not low < r < high:
         r = 0.5 * (low + high)
     for _ in range(_STEPS):
         value, slope = _rest(n, r, request, law)
+        # the zero is above r where f has the sign that it has at ``low``
         if (value > 0.0) == falling:
             low = r
         else:
@@ -107,14 +112,16 @@ def _find_turn(n, low, high, positive, request, law):
 
     n : int, index of the state.
     low, high : floats, rises between which the minimum lies, K.
-    positive : bool, whether f > 0 at both.
-    request, law : as in :func:`_rest`.
+    positive : bool, whether f > 0 at both; else f < 0 at both.
+    request : :class:`HeatRequest`, the states.
+    law : :class:`.law_record.Law` of the material.
     """
     for _ in range(_STEPS):
         r = 0.5 * (low + high)
         value, slope = _rest(n, r, request, law)
         if (value > 0.0) != positive:
             return r
+        # |f| falls towards its minimum, which is above r where f > 0 falls or f < 0 rises
         if (slope < 0.0) == positive:
             low = r
         else:
@@ -130,10 +137,10 @@ def _write(n, rise, stable, count, request, number, out, is_stable):
 
     n : int, index of the state.
     rise : float, the zero, K above ambient.
-    stable : bool, whether the equilibrium is stable.
-    count : int, number of zeros before.
+    stable : bool, whether the equilibrium is stable, that is f falls there.
+    count : int, number of zeros before, of all states; entry ``count`` is written.
     request : :class:`HeatRequest`, of which ambient and hottest are read.
-    number, out, is_stable : vectors of state, rise, K, and stability of all zeros, written.
+    number, out, is_stable : (m,) each, vectors of state, rise, K, and stability of all zeros.
     """
     if request.ambient[n] + rise > request.hottest[n]:
         return count
@@ -168,10 +175,12 @@ def heat_loop(law, request, number, out, is_stable):
         above = request.ambient[n] - request.pole
         most = request.hottest[n] - request.ambient[n]  # largest rise, K
         # Nodes k, with log2 u = k/density, from a little below that of the largest rise to a little
-        # above that of no rise.
+        # above that of no rise: some nodes more, as int() rounds towards 0 and a pair of zeros is
+        # seen from the nodes on either side.  u falls with the temperature.
         first = max(int(density * (x_hot + request.slope / (above + most))) - 3, -offset)
         last = min(int(density * (x_hot + request.slope / above)) + 4, offset)
-        # f and the rise at the last node (old, low) and at the one before it (older, cold).
+        # f and the rise at the last node (old, low) and at the one before it (older, cold), which
+        # are not read before so many nodes were passed.
         older = 0.0
         old = 0.0
         low = -above
@@ -184,6 +193,7 @@ def heat_loop(law, request, number, out, is_stable):
             if distance > 0.0:
                 r = min(request.slope / distance - above, r)
             f = request.power[n] * request.curve[k + offset] - r
+            # A change of sign between the last node and this one; old > 0 means that f falls there.
             if k < last and (f > 0.0) != (old > 0.0):
                 start = low + old / (old - f) * (r - low)  # zero of the chord
                 zero = _find_zero(n, low, r, start, old > 0.0, request, law)
@@ -195,7 +205,7 @@ def heat_loop(law, request, number, out, is_stable):
                 if near and abs(old) < abs(older - 2.0 * old + f):
                     up = old > 0.0
                     turn = _find_turn(n, cold, r, up, request, law)
-                    if turn == turn:  # not NaN
+                    if turn == turn:  # not NaN: a zero on either side of it
                         for side in range(2):
                             begin = cold if side == 0 else turn
                             end = turn if side == 0 else r

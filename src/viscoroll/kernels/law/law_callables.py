@@ -97,6 +97,7 @@ def _cover_law(V, omega, out, scenes):
     not finite or kappa |V| exceeds MAX_U.
     """
     scene = record_at(scenes)
+    # row_count counts the head of the rows as a row; cover rows have a head of their own
     cover_rows = floats_at(
         scene.cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * (scene.row_count - 1)
     )
@@ -145,15 +146,17 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
-    pairs = pairs_at(position, u, cover_rows)
+    pairs = pairs_at(position, u, cover_rows)  # zeros of half-spaces, as what follows from them
     free_creep = free_creep_of(pairs)[0]
     c = asymmetry_at(pairs, state.mu, functions.L, functions.dL, functions.ddL, cover_rows).value
     D = signed_creep(functions.L, free_creep, c, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
-    # What the traction changes in the moments: nothing of half-spaces.
+    # What the traction changes in the moments: nothing of half-spaces, where it is -0.0, which
+    # changes no bit of a sum.
     change = traction_on_moments(pairs, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
+    # like bodies: half of M and of its slope each; M of half-spaces does not depend on omega
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um
     out[8] = out[9] = 0.0
@@ -161,6 +164,8 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         half_space, cylinder, out[6], out[7] = body_moments(position, u, law)
         out[2] = factor * half_space + change.half_space
         out[3] = factor * cylinder + change.cylinder
+    # Slopes in the units of the caller: those of a load over V or omega, times the unit of the load
+    # over that of V or omega.  ``out[0]`` is still dimensionless.
     if scene.slopes:
         out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, D, state, law)
         if cover_rows is not None:
@@ -196,6 +201,7 @@ def pack_scenes(
         caller, a float: a dimensionless number times it is the caller's.
     Returns an array of shape (2,) and dtype SCENE.  Raises KeyError if ``scale`` lacks a name.
     """
+    # In the order of the fields of SCENE; row_count, the third of ``arrays``, includes the head.
     cover_rows = law.cover_rows
     function, address = (
         (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)
@@ -317,6 +323,8 @@ class Jitted:
     def __init__(self, scenes: NDArray[Any], owner):
         self._scenes = scenes
         self._owner = owner
+        # record 0 is without slopes, record 1 with them; both have the same C function.  Its
+        # pointers are void ones here, as ``out`` and an address are passed.
         self.plain, self.address = (int(scenes[n:].ctypes.data) for n in (0, 1))
         self.function_address = int(scenes["function"][0])
         self.function = ctypes.PYFUNCTYPE(*_C_TYPES[:3], ctypes.c_void_p, ctypes.c_void_p)(
@@ -406,6 +414,8 @@ def _lower_call(context, builder, signature, arguments):
     user data.  The status of the C function is not read: a state at which the law is not defined
     has NaN in all of them.
     """
+    # The record as doubles, and its first word as the address of a function; the results are
+    # written to the stack of the caller.
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)
     function = builder.load(builder.bitcast(scene, _FUNCTION.as_pointer().as_pointer()))

@@ -124,7 +124,8 @@ def locate_octave(x, e0):
     """
     # The biased exponent of x in its bits: x = m 2^(e0 + row) with m in [1/2, 1).
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
-    # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
+    # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds;
+    # the shift leaves the sign bit of row - 1 in all bits, so that ~slow masks out what is of row 0
     slow = (row - 1) >> 63
     row &= ~slow
     # 2^(2 - e0 - row), of row 0 2^-e0; t = 4 m - 3, of row 0 x 2^-e0: the bits of 3 become those of
@@ -144,6 +145,7 @@ def locate_row(x, law):
     A NaN has t NaN, in row 0 or in FAST_LIMIT by its sign bit.
     """
     row, t, dt_dx = locate_octave(x, law.marks[E0])
+    # one number, -1, for all rows beyond the last, which have no memory; in_fast_limit reads it
     return RowPosition(row if row < law.marks[ROW_COUNT] else FAST_LIMIT, t, dt_dx)
 
 
@@ -176,6 +178,7 @@ def _fast_terms(u, body, law):
     alpha = law.rows[ALPHA]
     W = law.rows[body]
     C = law.rows[body + 1]
+    # zeta = lam/(2 u) with lam in the limit: this expansion has no term of lam that is linear in z
     z = 0.5 * law.rows[LAM_FAST] / u
     return z, 0.5 * alpha * z * (C - W * np.log(z)), 0.125 * alpha * z * W
 
@@ -200,10 +203,12 @@ def length_and_moment(position, u, law):
         z, shift, part = _fast_terms(u, FAST_TOTAL, law)
         # As z falls like 1/u, u d(shift)/du = -(shift - 4 part) and u d(part)/du = -part.
         decrease = shift - 4.0 * part
+        # L = lam (1 + shift); u d(decrease)/du = -(decrease - 4 part), again by these two slopes
         dL = -(lam / u) * decrease
         ddL = lam / u * (2.0 * decrease - 4.0 * part) / u
         moment = fast_moment(shift, u, law.cover_rows)
-        # d(u z m)/du with u z constant: z u dm/du.
+        # d(u z m)/du with u z constant: z u dm/du.  m is moment + part with u d(moment)/du =
+        # 4 part - moment: of half-spaces moment is shift, of a cover it is in 1/u and part is 0.
         return LengthAndMoment(
             L=lam * (1.0 + shift),
             dL=dL,
@@ -232,6 +237,7 @@ def moment_factor(position, u, scale, state):
         are read.
     Returns a float with the sign of V, dimensionless: V itself in the rows, 0 at V = 0.
     """
+    # z |V| from u = kappa |V|, which has no sign
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
 
 
@@ -272,6 +278,7 @@ def body_moments(position, u, law):
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
         _, cylinder, other = _fast_terms(u, FAST_CYLINDER, law)
+        # slopes as in length_and_moment, with W and C of one body
         return (
             half_space + part,
             cylinder + other,
@@ -282,7 +289,7 @@ def body_moments(position, u, law):
     half_space, cylinder, d_half_space, d_cylinder, _, _ = evaluate_pair(
         law.rows, start, position.t
     )
-    factor = u * position.dt_dx
+    factor = u * position.dt_dx  # d(u m)/du = m + u dm/du, with the slope of m in t
     return half_space, cylinder, half_space + factor * d_half_space, cylinder + factor * d_cylinder
 
 
@@ -315,7 +322,7 @@ def limits_at_rest(kappa, law):
     """
     if law.cover_rows is None:
         return 1.0, -0.0
-    position = locate_row(0.0, law)
+    position = locate_row(0.0, law)  # row 0, t = 0: limits are the constants of its polynomials
     free_creep = free_creep_at(position, 0.0, law.cover_rows)[0]
     return length_and_moment(position, 0.0, law).L, 0.5 * free_creep / kappa
 
@@ -338,6 +345,7 @@ def _half_space_eta_over_F(y, law):
     """
     half_alpha = 0.5 * law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]
+    # at y = 0, v infinite, the logarithm would make y times the bracket a NaN; the product is 0
     bracket = law.rows[FAST_TOTAL + 1] - W * np.log(y) if y > 0.0 else 0.0
     return 1.0 - half_alpha * y * bracket, half_alpha * (bracket - W)
 
@@ -380,6 +388,7 @@ def H_over_F2(position, v, law):
     if in_fast_limit(position):
         alpha = law.rows[ALPHA]
         y = 1.0 / v
+        # H/F^2 = alpha (eta/F)^2; d_eta is minus the slope over y, and dy/dv = -y^2
         eta, d_eta = _half_space_eta_over_F(y, law)
         return alpha * eta * eta, 2.0 * alpha * eta * d_eta * y * y
     value, slope = evaluate_single(law.rows, ensure_part(H_OVER_F2, position.row, law), position.t)
@@ -412,13 +421,16 @@ def H_over_F2_secants(position, near, v, x, law):
     value, secant, slope, slope_secant = evaluate_secants(
         law.rows, ensure_part(H_OVER_F2, position.row, law), position.t, end
     )
+    # from t to v: a slope has the factor dt/dv, the secant of the slope has it twice
     secant *= dt
     slope_secant *= dt * dt
     if near.row != position.row:
         near_dt = near.dt_dx
         start = ensure_part(H_OVER_F2, near.row, law)
+        # the part of the interval in the row before, up to its end, t = 1
         _, near_secant, _, near_slope_secant = evaluate_secants(law.rows, start, 1.0, near.t)
-        # Fraction of the interval, of length v x/(1 + x), that lies in the row of v.
+        # Fraction of the interval, of length v x/(1 + x), that lies in the row of v, which begins
+        # (t + 1)/dt before v; rounding may leave more than 1.
         part = min((position.t + 1.0) * (1.0 + x) / (dt * v * x), 1.0)
         secant = part * secant + (1.0 - part) * near_secant * near_dt
         slope_secant = part * slope_secant + (1.0 - part) * near_slope_secant * near_dt * near_dt
@@ -510,7 +522,8 @@ def _find_crossing(load, n, curve, law):
     rise = curve.value[n + 1] - curve.value[n]
     if curve.is_extremum[n + 1] and abs(load - curve.value[n + 1]) <= EXTREMUM_RTOL * abs(load):
         return high
-    # First guess: fraction of the interval in ln u.  ``top`` is the u of an extremum at a node.
+    # First guess: fraction of the interval in ln u.  ``top`` is the u of an extremum at a node; 0
+    # without one: the bound of the last step, at the end of the loop, is then _LAST_STEP itself.
     part = (load - curve.value[n]) / rise
     top = 0.0
     if curve.is_extremum[n]:  # beside an extremum the curve is a parabola
@@ -524,6 +537,7 @@ def _find_crossing(load, n, curve, law):
         functions = length_and_moment(locate_row(u, law), u, law)
         value = u * functions.scale * functions.m - u * curve.gain
         slope = u * (functions.d_um - curve.gain)  # over ln u
+        # the crossing is above u where a rising curve is below the load, or a falling one above it
         if (value <= load) == (rise > 0.0):
             low = u
         else:
@@ -531,8 +545,8 @@ def _find_crossing(load, n, curve, law):
         step = (load - value) / slope
         new = u * np.exp(step)
         if not low <= new <= high:  # Outside the bracket, or NaN: its middle in ln u, and go on.
-            new = np.sqrt(low) * np.sqrt(high)
-            step = 1.0
+            new = np.sqrt(low) * np.sqrt(high)  # the product of both may overflow or underflow
+            step = 1.0  # not small, so that the iteration goes on
         old = u
         u = new
         if abs(step) <= _LAST_STEP * min(1.0, abs(old - top) / old):

@@ -90,8 +90,8 @@ def element(values, n):
     n : int, index of the state, >= 0; not checked.
     Returns ``values[n]``; of an array of length 1 its only element, whatever n is.
     """
-    # Index 0 of length 1 by a product, without a branch; unsigned, as numba would test signed
-    # indices for negative ones.
+    # Index 0 of an array of length 1 by a product, True or False counting as 1 or 0, without a
+    # branch; unsigned, as numba would test signed indices for negative ones.
     return values[np.uint64(n * (values.size > 1))]
 
 
@@ -125,6 +125,7 @@ def write_field(row, value, n, request):
     Returns nothing.
     """
     if row >= 0:
+        # unsigned: numba would test signed indices for negative ones
         request.out[np.uint64(row), np.uint64(n + request.first)] = value
 
 
@@ -143,9 +144,11 @@ def slip_and_creepage(state):
     """
     V = state.V
     creep = state.creep  # delta or omega
+    # omega - V = delta V has the sign of -delta for V < 0; V = 0.0 and -0.0 count as V > 0
     if not state.creep_is_omega:
         return -creep if V < 0.0 else creep, creep
     slip = creep - V
+    # written out at V = 0: slip/V would be NaN for slip = 0, and would have the sign of a zero V
     return slip, slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
 
 
@@ -252,6 +255,8 @@ def ensure_part(part, row, law):
         are written.
     Returns an int, the index of the first coefficient, of a pair of the first of its 48.
     """
+    # row + 1, as the head, as long as a row, is in front of row 0 in both arrays; of a pair the
+    # mark of its first part alone is read, and written by the maker
     number = (row + 1) * PARTS_PER_ROW + part // PART_SIZE
     if unlikely(law.marks[np.uint64(number)] != law.marks[VERSION]):
         call_address(law.maker, number, law.source)
@@ -276,6 +281,8 @@ def select_index(n, addresses, state_count, marks):
     index = element(integers_at(addresses, state_count), n)
     if marks[SELECTED] == index:
         return -1
+    # SELECTED is -1 at first, which no index equals: the first call always selects.  A new version
+    # makes all parts that were made before outdated (ensure_part), without a loop over them.
     marks[SELECTED] = index
     marks[VERSION] += 1
     return index

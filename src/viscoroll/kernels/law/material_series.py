@@ -125,6 +125,7 @@ def unpack_series(numbers, n, unlike):
     n : int, number of modes, >= 0.
     unlike : bool, whether the bodies differ, so that the weights are kept; else they are empty.
     """
+    # without weights these are still stored: Q begins at row 5 in any case
     row = numbers[: (5 + n) * n].reshape(5 + n, n)
     return Series(
         a=row[0], b=row[1], e=row[2], t=row[3], weights=row[4, : n if unlike else 0], Q=row[5:]
@@ -138,6 +139,7 @@ def split_workspace(numbers, modes):
     numbers : vector of :func:`workspace_size` doubles.
     modes : int, number of modes, >= 0.
     """
+    # six vectors of n numbers, then the matrix, modes times n, then four numbers a function
     n = LANES * modes
     end = (_VECTORS + modes) * n
     row = numbers[: _VECTORS * n].reshape(_VECTORS, n)
@@ -175,6 +177,7 @@ def evaluate_ratios(places, series, work):
         Returns nothing.
     """
     z = unpack(places)
+    # number ``at`` of the flat vectors: place at % LANES of mode at // LANES
     for at in range(LANES * series.a.size):
         i = at // LANES
         x = series.a[i] * z[at % LANES]
@@ -265,6 +268,8 @@ def _factorize(matrix, count):
         inverse = 1.0 / load(matrix, i * count + i)
         store(matrix, i * count + i, inverse)
         for row in range(i + LANES, row_size, LANES):
+            # -L of this row; vectors have no unary minus.  What is stored below the diagonal is not
+            # divided by D: it is L D.
             factor = load(matrix, row * count + i) * (0.0 - inverse)
             for column in range(i + LANES, row + LANES, LANES):
                 at = row * count + column
@@ -281,6 +286,8 @@ def _substitute(matrix, right, count):
     Returns nothing.
     """
     row_size = LANES * count
+    # Forwards with L: 1/D times the right side i, times column i of L D, is taken from later ones.
+    # Then backwards: D and L^T, with the products of row ``row`` of L D taken from earlier ones.
     for i in range(0, row_size, LANES):
         unknown = load(matrix, i * count + i) * load(right, i)
         for row in range(i + LANES, row_size, LANES):
@@ -316,7 +323,7 @@ def solve_modes(jets, series, work):
         for j in range(count):
             store(work.kf, LANES * j, series.Q[j, i] * load(work.k, LANES * j))
         for n in range(0, i + 1, 2):  # two sums that do not wait for one another
-            other = min(n + 1, i)
+            other = min(n + 1, i)  # the last sum may be formed twice; that is harmless
             at = LANES * i * count
             first = second = broadcast(0.0)
             for j in range(count):
@@ -325,7 +332,7 @@ def solve_modes(jets, series, work):
                 second = fma4(broadcast(series.Q[j, other]), x, second)
             store(work.matrix, at + LANES * n, _value(jets, first))
             store(work.matrix, at + LANES * other, _value(jets, second))
-        at = LANES * i * (count + 1)
+        at = LANES * i * (count + 1)  # the diagonal, to which 1/r is added
         store(
             work.matrix, at, load(work.matrix, at) + _value(jets, load(work.inverse_r, LANES * i))
         )
@@ -372,13 +379,14 @@ def _split_moment(jets, lam2, series, work):
     half_space = cylinder = broadcast(0.0)
     # ``right`` becomes v_i: u is u_i, and ``y`` holds X.
     for i in range(count):
-        own = u = load(work.i2, LANES * i)
+        own = u = load(work.i2, LANES * i)  # i2_i, and the first term of u_i
         a = series.a[i]
         for n in range(count):
             weight = a * series.a[n] / (a + series.a[n])
             u += weight * multiply(jets, load(work.y, LANES * n), own - load(work.i2, LANES * n))
         v = multiply(jets, multiply(jets, load(work.y, LANES * i), u), lam2)
         store(work.right, LANES * i, (1.0 / series.e[i]) * v)
+    # m_j/t_j = k_j f_j + sum_i Q_ji v_i
     for j in range(count):
         moment = load(work.kf, LANES * j)
         for i in range(count):
@@ -422,6 +430,7 @@ def evaluate_functions(jets, z, series, work):
         pressed += multiply(jets, X, load(work.i2, at))
     inverse_z = reciprocal(jets, z)
     h_over_z = multiply(jets, h, inverse_z)
+    # lam^2 = 1/(1 + 2 h/z), and m = g + lam^2 sum X_i i2_i
     lam2 = reciprocal(jets, unit + 2.0 * h_over_z)
     m = g + multiply(jets, lam2, pressed)
     half_space = cylinder = 0.5 * m

@@ -92,7 +92,8 @@ def _evaluate_asymptotic(terms, x):
     infinity.
     """
     w = 1.0 / x
-    # Sums of a_n x^-n, -n a_n x^-(n + 1) and n (n + 1) a_n x^-(n + 2), by Horner's scheme in 1/x.
+    # Sums of a_n x^-n, -n a_n x^-(n + 1) and n (n + 1) a_n x^-(n + 2), by Horner's scheme in 1/x
+    # from n = 1 on, without the last powers of w, which the returned values have.
     value = slope = second_derivative = 0.0
     for n in range(terms.size - 1, 0, -1):
         value = value * w + terms[n]
@@ -141,10 +142,12 @@ def _write_ratio_jets(z, series, work):
         if x >= _ASYMPTOTIC:
             r, dr, ddr = _evaluate_asymptotic(_SERIES_R, x)
         i2 = ratio_i2(x, r)
+        # Below 4 i2 is not a difference (ratio_i2), and its derivatives follow from it; from 4 on
+        # they are those of the difference 1 - 2 r/x.
         if x < 4.0:  # i2' = r - (2/x + r) i2, by I2' = I1 - 2 I2/x and I0' = I1
             di2 = r - (2.0 / x + r) * i2
             ddi2 = dr - 2.0 * (di2 - i2 / x) / x - di2 * r - i2 * dr
-        else:  # of 1 - 2 r/x
+        else:
             di2 = 2.0 * (r / x - dr) / x
             ddi2 = (4.0 * (dr - r / x) / x - 2.0 * ddr) / x
         x = b * z
@@ -191,6 +194,7 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
     dH = 2.0 * (z + h + z * dh)
     H_s = 2.0 * z * h_s
     dH_s = 2.0 * (h_s + z * dh_s)
+    # y_s + T_mean g stands in the last term of U, here with its slope; d in front is d/dz
     y_s = y_s + T_mean * g
     dy_s = dy_s + T_mean * dg
     W = H * g - 2.0 * z * (h - z * dh) * g - z * H * dg + z * z * (y - z * dy)
@@ -217,6 +221,7 @@ def set_alpha_of_state(n, alpha, series):
     """
     if alpha.size > 0:
         one_alpha = element(alpha, n)
+        # one mode with the creep time 1: tau = 1/alpha, E_1 = alpha - 1 and J_1 = (alpha - 1)/alpha
         series.a[0] = one_alpha
         series.e[0] = series.t[0] = np.sqrt((one_alpha - 1.0) / one_alpha)
 
@@ -241,6 +246,7 @@ def modes_loop(series, alpha, work, z, out):
         set_alpha_of_state(n, alpha, series)
         _write_ratio_jets(z[n], series, work)
         g, h, y = evaluate_functions(True, pack(z[n], 1.0, 0.0, 0.0), series, work)
+        # a function is a jet, of which value and d/dz are read; d/d ln(1/z) = -z d/dz
         for row in range(FUNCTIONS):
             out[row, n] = work.functions[LANES * row]
             out[FUNCTIONS + row, n] = -z[n] * work.functions[LANES * row + 1]
@@ -307,6 +313,8 @@ def _memory_integral(u, w, a, r_complement):
     [phi, pi], with the other sign, where a (cos phi - cos t) <= a w < 1.  Elsewhere, if a u > 38,
     the part of [0, phi] where a (cos t - cos phi) exceeds 38 is left out.
     """
+    # Of u and w the smaller one is used where it matters: cos phi itself would lose the digits of a
+    # small u or w.
     rear = w < 1.0 and a * w < 1.0
     sine = np.sqrt(u * w)  # sin phi, as cos phi = 1 - u = w - 1
     edge = w if rear else u  # from the rear edge near it, else from the front edge
@@ -321,10 +329,11 @@ def _memory_integral(u, w, a, r_complement):
         span = 2.0 * np.arcsin(min(0.5 * depth / np.sin(0.5 * (angle + deep)), 1.0))
     half_span = 0.5 * span
     sign = -1.0 if rear else 1.0
-    offset = w - r_complement
+    offset = w - r_complement  # r + cos phi: the factor of the exponential is this plus D
     total = 0.0
     for n in range(_NODES.size):
-        # t = phi - v (or phi + v): D = +-2 sin(v/2) sin(phi -+ v/2)
+        # t = phi - v (or phi + v): D = +-2 sin(v/2) sin(phi -+ v/2), with v/2 = half_span times the
+        # node; 1 - edge is cos phi, near the rear edge -cos phi
         s = np.sin(half_span * _NODES[n])
         D = sign * 2.0 * s * (sine * np.sqrt(1.0 - s * s) - (1.0 - edge) * s)
         total += _WEIGHTS[n] * (offset + D) * np.exp(-a * D)
@@ -373,6 +382,7 @@ def unit_shape(u, w, z, series, weights):
             _, weights.complement[i] = ratio_r(series.a[i] * z)
     for i in range(series.a.size):
         a = series.a[i] * z
+        # an infinite a would leave an interval of length 0 and an exponent inf times 0, a NaN
         if weights.weight[i] > 0.0 and a < np.inf:
             shape += weights.weight[i] * _memory_integral(u, w, a, weights.complement[i])
     return shape

@@ -82,6 +82,8 @@ def _temme_k1(terms: int = 10) -> list[list[float]]:
     Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of
     ``terms`` floats, n = 0 first; gamma is Euler's constant.
     """
+    # z I1 = sum 2 n q^n/n!^2, by which the logarithm of f_n is multiplied; the rest is 1/n!^2 less
+    # 2 n/n!^2 times the harmonic sum, from n = 1 on
     i0, k0 = _temme_k0(terms)
     return [
         [2 * n * i0[n] for n in range(terms)],
@@ -128,7 +130,8 @@ def ratio_i(x):
         return _horner(u, _I1_TAIL) / _horner(u, _I0_TAIL)
     # I_(n+1)/I_n = x/(2 n + 2 + x I_(n+2)/I_(n+1)): each step damps the error of the start by
     # (I_(n+1)/I_n)^2
-    n = 12 + int(x)
+    n = 12 + int(x)  # enough steps for rounding at every x < 25, as the module measured
+    # the start: x/(n + 1/2 + sqrt((n + 3/2)^2 + x^2)), close to I_(n+1)/I_n
     tail = x / (n + 0.5 + np.sqrt((n + 1.5) * (n + 1.5) + x * x))
     for m in range(n, 0, -1):
         tail = x / (2.0 * m + x * tail)
@@ -151,13 +154,14 @@ def ratio_k0k1(z):
         if z == 0.0:
             return 0.0
         # ln 2 - ln z and not -ln(z/2): half the smallest double is zero
+        # ``f`` is -(ln(z/2) + gamma), which multiplies I0 in K0 and, with minus, z I1 in z K1
         f = (_LN2 - np.log(z)) - _EULER_GAMMA
         q = 0.25 * z * z
         k0 = f * _horner(q, _K0[0]) + _horner(q, _K0[1])
         z_k1 = 1.0 + (_horner(q, _K1[1]) - f * _horner(q, _K1[0]))
         return z * (k0 / z_k1)
     # K1/K0 = (z + 1/2 - h)/z with h = (1/4)/(2 (z + 1) - (9/4)/(2 (z + 2) - ...)); error exp(-4
-    # sqrt(2 n z))
+    # sqrt(2 n z)), which is 5e-17 at n z = 44
     n = 5 + int(44.0 / z)
     tail = 0.0
     for m in range(n, 0, -1):
@@ -232,12 +236,13 @@ def brent(equation, data, low, high, floor):
         return a, OK
     if not fa > fb:  # a NaN
         return np.nan, NOT_CONVERGED
-    # b: best so far; a: the one before; c: the far end of the bracket
+    # b: best so far; a: the one before; c: the far end of the bracket; d: last step, e: the one
+    # before it; fa, fb, fc: residuals
     c = a
     fc = fa
     d = e = b - a
     for _ in range(_MAX_STEPS):
-        if abs(fc) < abs(fb):
+        if abs(fc) < abs(fb):  # the far end is the better one: they change places
             a, b, c = b, c, b
             fa, fb, fc = fb, fc, fb
         tolerance = floor + 2.0 * _EPS * abs(b)
@@ -256,6 +261,7 @@ def brent(equation, data, low, high, floor):
                 t = fb / fc
                 p = s * (2.0 * half_interval * q * (q - t) - (b - a) * (t - 1.0))
                 q = (q - 1.0) * (t - 1.0) * (s - 1.0)
+            # p >= 0 with the sign of the step in q, for the comparisons below
             if p > 0.0:
                 q = -q
             p = abs(p)
@@ -268,8 +274,10 @@ def brent(equation, data, low, high, floor):
                 d = e = half_interval
         a = b
         fa = fb
+        # at least by the tolerance, towards c, so that the root is soon enclosed within it
         b += d if abs(d) > tolerance else np.copysign(tolerance, half_interval)
         fb = _residual(equation, b, data)
+        # the root is between b and the point before it, which becomes the far end
         if (fb > 0.0) == (fc > 0.0):
             c = a
             fc = fa
@@ -358,7 +366,7 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
     grows in proportion to V: 1e-13 mu at kappa V = 1e4, 2e-9 mu at 1e8.
     """
     k = ratio_k0k1(beta * zeta)
-    if k == 0.0:
+    if k == 0.0:  # beta zeta = 0: the last term of Eq. (15), bracket/k, would be 0/0 or infinite
         return mu
     bracket = 1.0 + epsilon - beta - 2.0 * delta_abs * kappa / (mu * lam)
     return mu * (1.0 - beta * beta * lam * lam - 2.0 * beta * lam * lam * bracket / k)
@@ -424,8 +432,10 @@ def direct_state(alpha, n, request):
         M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)
     delta_star = direct_delta_star(kappa, mu, lam, epsilon)
     full_slip = abs(delta) >= delta_star
+    # of full slip, also for an infinite delta at V = 0
     beta = 0.0
     Q = mu
+    # at V = 0 zeta is infinite, which Eqs. (10) and (15) cannot take: their limit
     if not full_slip and speed == 0.0:
         s = abs(delta) / delta_star
         beta = 1.0 - s

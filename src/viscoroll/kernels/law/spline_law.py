@@ -137,7 +137,7 @@ def _locate(spline, name, x):
         return AxisPosition(axis, interval, 0.0, slope)
     if _number_at(spline, axis + IS_LOG) > 0.0:
         slope = 1.0 / x
-        x = np.log(x)
+        x = np.log(x)  # NaN of x < 0, which is refused below
     # Outside of the axis, or NaN.
     if not _number_at(spline, axis + EDGES) <= x <= _number_at(spline, axis + EDGES + count):
         return AxisPosition(axis, interval, np.nan, slope)
@@ -162,7 +162,8 @@ def _basis(spline, position, n):
     vector.  Value and slope are NaN outside of the axis.
     """
     axis = position.axis
-    # Index of the constant coefficient: behind head and count + 1 edges of the axis.
+    # Index of the constant coefficient: behind head and count + 1 edges of the axis, in the square
+    # of TERMS basis splines with TERMS coefficients each of the interval.
     at = (
         (position.interval * TERMS + n) * TERMS
         + EDGES
@@ -175,6 +176,7 @@ def _basis(spline, position, n):
     c2 = _number_at(spline, at + 2)
     c3 = _number_at(spline, at + 3)
     t = position.t
+    # basis splines are numbered from left to right: in interval i those of i to i + 3 are not 0
     start = (position.interval + n) * _integer_at(spline, axis + STRIDE)
     return (
         fma(t, fma(t, fma(t, c3, c2), c1), c0),
@@ -200,6 +202,8 @@ def evaluate(spline, V, delta, alpha):
     over_alpha = _locate(spline, ALPHA_AXIS, alpha)
     # 0, or NaN where a coordinate is outside of its axis.
     value = dV = ddelta = dalpha = 0.0 * (over_V.t + over_delta.t + over_alpha.t)
+    # Over alpha as many basis splines as the axis has, often one; over V and delta always TERMS, a
+    # number known to the compiler, of which those beyond the degree are 0.
     for k in range(_integer_at(spline, over_alpha.axis + ORDER)):
         c, dc, plane = _basis(spline, over_alpha, k)
         for i in range(TERMS):
@@ -287,9 +291,9 @@ class TablePlace(NamedTuple):
 def _place(V, D, kappa, table):
     """Return the :class:`TablePlace` of a state.
 
-    V : float, speed of the axis, dimensionless, of any sign.
-    D : float, 2 kappa delta, which may be infinite.
-    kappa : float, slenderness R/l0.
+    V : float, speed of the axis, dimensionless, of any sign; kappa |V| may exceed the nodes.
+    D : float, 2 kappa delta, of any sign, which may be infinite.
+    kappa : float, slenderness R/l0, > 0.
     table : vector of :mod:`.coupled_splines`.
     """
     u = kappa * abs(V)
@@ -304,15 +308,16 @@ def _place(V, D, kappa, table):
 def _load(name, factor, kappa, at, table):
     """Return a field times a factor as a :class:`Load`, which is odd in V.
 
-    name : int, TRACTION, HALF_SPACE or CYLINDER.
+    name : int, TRACTION, HALF_SPACE or CYLINDER, of which the table has Q/mu and kappa times the
+        moments.
     factor : float, mu of Q, 1/kappa of a moment.
-    kappa : float, slenderness.
+    kappa : float, slenderness, > 0.
     at : :class:`TablePlace` of the state.
     table : vector of :mod:`.coupled_splines`.
     """
     found = field_at(name, at.state.w, at.cell, table)
-    # With u = kappa |V| and D = 2 kappa delta; the slope over V has twice the sign of V, which is
-    # 1.
+    # With u = kappa |V| and D = 2 kappa delta.  The slope over V has the sign of V twice, as the
+    # load is odd and du/dV = kappa sign V: it has none.
     return Load(
         at.sign * factor * found.value,
         factor * kappa * (found.du + found.dw * at.state.dw_du),
@@ -325,10 +330,12 @@ def _traction(mu, at, table):
     """Return the traction Q, a float, dimensionless, limited to +-mu LIMIT.
 
     mu : float, coefficient of friction.
-    at, table : as of :func:`_load`.
+    at : :class:`TablePlace` of the state.
+    table : vector of :mod:`.coupled_splines`.
     """
     limit = table[LIMIT]
     found = value_at(TRACTION, at.cell, table)
+    # in full slip exactly the limit, not the value of the spline at the onset
     found = at.state.sigma * limit if at.state.w >= 1.0 and limit < np.inf else found
     return at.sign * mu * min(max(found, -limit), limit)
 
@@ -337,10 +344,11 @@ def _traction(mu, at, table):
 def _sloped_traction(mu, kappa, at, table):
     """Return Q of one state with its slopes, a :class:`Load`.
 
-    mu, kappa : floats, coefficient of friction and slenderness.
+    mu, kappa : floats, coefficient of friction and slenderness, > 0.
     at : :class:`TablePlace`, the state in the table.
     table : vector of :mod:`.coupled_splines`.
-    The slopes are 0 where |Q| is limited to mu times the entry LIMIT of the table.
+    The slopes are 0 where |Q| is limited to mu times the entry LIMIT of the table, so also in full
+    slip; an infinite LIMIT limits nothing.
     """
     value = _traction(mu, at, table)
     if abs(value) >= mu * table[LIMIT]:
@@ -350,8 +358,11 @@ def _sloped_traction(mu, kappa, at, table):
 
 @inline_kernel
 def _at_fixed_omega(load, V, delta):
-    """Return (slope of a load over V at fixed omega, that over omega), floats; infinite at V = 0
-    where it depends on the creepage.
+    """Return (slope of a load over V at fixed omega, that over omega), floats, dimensionless;
+    infinite, or NaN, at V = 0 where it depends on the creepage.
+
+    load : :class:`Load`, slopes over V at fixed creepage and over the creepage.
+    V, delta : floats, speed, of any sign, and creepage, dimensionless.
     """
     if load.ddelta == 0.0:  # Also at V = 0, where the quotients below are NaN.
         return load.dV, 0.0
@@ -367,9 +378,9 @@ def look_up(table, u, D):
     u, D : kappa |V| and 2 kappa delta of each, (n,).
     Columns are the fields TRACTION to WORK + 1 of :mod:`.coupled_splines`.
     """
-    out = np.empty((u.size, FRICTION))
+    out = np.empty((u.size, FRICTION))  # FRICTION is the number of fields before friction
     for n in range(u.size):
-        at = _place(u[n], D[n], 1.0, table)
+        at = _place(u[n], D[n], 1.0, table)  # u as V > 0 with kappa = 1
         for name in range(out.shape[1]):
             out[n, name] = value_at(name, at.cell, table)
     return out
@@ -394,9 +405,11 @@ def _write_state(table, given, n, request):
     """Write the requested fields of one state.
 
     table : vector of :mod:`.coupled_splines`, with all fields.
-    given : :class:`.law_record.State`, of numbers.
-    n : int, its number.
-    request : :class:`.law_record.Request`, whose ``out`` is written, dimensionless.
+    given : :class:`.law_record.State` of numbers; all fields are read.
+    n : int, index of the state, >= 0; its column of ``out`` is n + ``request.first``.
+    request : :class:`.law_record.Request`: of ``out`` the rows that ``to`` names are written,
+        dimensionless: creepages, lengths, Q in units of P, moments in units of P R and their
+        slopes.  Slopes of the moments of the bodies are written only beside one of Q or M.
     Returns nothing.
     """
     to = request.to
@@ -413,9 +426,10 @@ def _write_state(table, given, n, request):
     if to.epsilon >= 0:
         write_field(to.epsilon, value_at(SHIFT, at.cell, table), n, request)
     if to.beta >= 0:
-        stick = value_at(STICK, at.cell, table)
+        stick = value_at(STICK, at.cell, table)  # a spline may pass 0 and 1 by its error
         write_field(to.beta, min(max(stick, 0.0), 1.0), n, request)
-    # delta_star is the distance of the onset on the side of the state from free rolling.
+    # delta_star is the distance of the onset on the side of the state from free rolling: the side
+    # is that of the creep of free rolling here, of the middle creep in ``at``.
     if max(to.delta_star, to.delta_0) >= 0:
         free = edge_at(FREE, at.u, at.speed, table).value
         onset = edge_at(ONSET + np.int64(D >= free), at.u, at.speed, table).value
@@ -445,11 +459,13 @@ def _write_slopes(table, given, at, delta, n, request):
     """Write the requested slopes of one state, of Q and of the moments.
 
     table : vector of :mod:`.coupled_splines`.
-    given : :class:`.law_record.State`, the state.
+    given : :class:`.law_record.State`, the state, of which V, kappa, mu and ``creep_is_omega`` are
+        read.
     at : :class:`TablePlace`, the state in the table.
-    delta : float, creepage.
-    n : int, index of the state in ``request.out``.
-    request : :class:`.law_record.Request`, whose ``out`` is written.
+    delta : float, creepage, dimensionless, infinite at V = 0 where omega is given and not 0.
+    n : int, index of the state, >= 0; its column of ``out`` is n + ``request.first``.
+    request : :class:`.law_record.Request`, of whose ``out`` the rows of the slopes that ``to``
+        names are written, dimensionless.
     Returns nothing.
     """
     to = request.to
@@ -466,7 +482,8 @@ def _write_slopes(table, given, at, delta, n, request):
     write_field(to.dQ_ddelta, Q.ddelta, n, request)
     write_field(to.dM_ddelta, M.ddelta, n, request)
     fixed = given.creep_is_omega
-    # The slope over V is at fixed omega where the state has omega, else at fixed creepage.
+    # The slope over V is at fixed omega where the state has omega, else at fixed creepage; that
+    # over omega is always at fixed V.
     for load, over_V, over_omega in (
         (Q, to.dQ_dV, to.dQ_domega),
         (M, to.dM_dV, to.dM_domega),
@@ -486,7 +503,7 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     any sign.
     pointer : address of RESULTS numbers, which are written in the units of the caller as by
         :func:`.law_callables._evaluate`: without ``slopes`` the first four alone.
-    scenes : pointer to a TABLE record.
+    scenes : pointer to a TABLE record, all of whose fields but ``function`` are read.
     Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the table, V or
     omega is not finite, or the creepage is outside of a table that does not slip fully at its ends.
     """
@@ -499,6 +516,7 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     u = kappa * abs(V)
     if not (u <= table[MOST] and abs(slip) < np.inf):  # too fast, or not finite
         return refuse(out)
+    # as in law_record.slip_and_creepage: V = 0.0 and -0.0 count as V > 0
     delta = slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
     at = _place(V, 2.0 * kappa * delta, kappa, table)
     if at.state.w > 1.0 and table[SLIPS] == 0.0:
@@ -520,12 +538,15 @@ def _slopes_to_caller(scene, V, delta, at, table, out):
     """Write the slopes of a state in the units of the caller into ``out``, (RESULTS,).
 
     scene : TABLE record, of which kappa, mu and the units are read.
-    V, delta : floats, speed, dimensionless, and creepage.
+    V, delta : floats, speed, of any sign, and creepage, dimensionless.
     at : :class:`TablePlace` of the state.
     table : vector of :mod:`.coupled_splines`.
-    out : vector of RESULTS numbers, of which 4 to 9 are written.
+    out : vector of RESULTS numbers, of which 4 to 9 are written, in the order of
+        :func:`.law_callables._evaluate`: dQ/dV at fixed omega, dQ/domega at fixed V, then slopes of
+        M_half_space and M_cylinder over V, then over omega.
     Returns nothing.
     """
+    # a slope in the units of the caller: times the unit of the load over that of V or omega
     kappa = scene.kappa
     Q = _sloped_traction(scene.mu, kappa, at, table)
     half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
@@ -544,11 +565,15 @@ def _slopes_to_caller(scene, V, delta, at, table, out):
 def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
     """Return the law of a table as a function for jitted code, :class:`Jitted`.
 
-    table : vector of :mod:`.coupled_splines`, which the law keeps alive with ``owner``.
-    kappa, mu : of the scene.
+    table : vector of :mod:`.coupled_splines`, contiguous doubles, which the law keeps alive.
+    owner : any object that the law keeps alive besides, as it owns the memory of ``table``.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction of the scene, > 0.
     scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the
-    caller.
+        caller, a float: a dimensionless number times it is the caller's.
+    Raises KeyError if ``scale`` lacks a name.  The C function is compiled here if it is not yet.
     """
+    # two records of user data: without slopes, then with them (Jitted); the fields in the order of
+    # TABLE
     function = c_function_address(_table_law, TABLE)
     numbers = (
         table.ctypes.data,
@@ -567,7 +592,7 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
     """Find the creepages at which friction balances given loads, by bisection of d = sigma w.
 
     table : vector of :mod:`.coupled_splines`.
-    kappa, mu : slenderness and coefficient of friction of each state, (n,).
+    kappa, mu : slenderness and coefficient of friction of each state, > 0, (n,).
     u : kappa V of each state, >= 0, (n,).
     load : required value of Q - M_half_space, with ``of_spin`` of Q + M_cylinder, (n,).
     of_spin : bool, whether the cylinder is balanced, instead of the axis.
@@ -594,11 +619,12 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
                 found -= value_at(HALF_SPACE, cell, table) / kappa[n]
             if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
                 break
-            if step > 1 and found < load[n]:
+            if step > 1 and found < load[n]:  # the load of friction grows with d
                 low = d
             elif step > 1:
                 high = d
         middle = edge_at(MIDDLE, u[n], speed, table).value
         onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value
+        # 2 kappa delta from w = |d| on the side of d; |d| = 1 exactly only in steps 0 and 1
         out[n, 0] = middle + abs(d) * (onset - middle)
         out[n, 1] = load[n] - found if abs(d) == 1.0 else 0.0

@@ -209,6 +209,10 @@ def grid_size(count: int, alpha: float) -> int:
     each octave of z that the rows need, and reserves at both ends for the 36 points around an
     octave.
     """
+    # lam = 2 u z falls from 1 to alpha^(-1/2): z spans as many octaves as u and half those of alpha
+    # more.  Two octaves are spare at either end, and there the points around the first and the last
+    # octave reach on; the third POINT_COUNT is the points of the slow row, LANES the rounding of
+    # the first node to a multiple of four (make_part).
     nodes = (
         NODES_PER_OCTAVE * (count + math.ceil(0.5 * math.log2(alpha)) + 4) + 3 * POINT_COUNT + LANES
     )
@@ -244,9 +248,11 @@ def select_series(n, source):
     marks = integers_at(source.marks, PARTS_PER_ROW)
     index = select_index(n, source.material_index, source.state_count, marks)
     if index >= 0:
-        marks[_MATERIAL] = source.materials + 8 * source.material_size * index
+        marks[_MATERIAL] = source.materials + 8 * source.material_size * index  # bytes of doubles
         rows = floats_at(source.rows, ROW_SIZE)
         numbers = floats_at(marks[_MATERIAL], SERIES_START)
+        # the first numbers of a material are in the order of the head of rows, up to T of the
+        # cylinder; the next three are integers stored as doubles, exactly
         for k in range(FIRST_EXPONENT):
             rows[k] = numbers[k]
         marks[E0] = numbers[FIRST_EXPONENT]
@@ -269,9 +275,12 @@ def make_part(number, source):
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)
-    start = PART_SIZE * number
+    start = PART_SIZE * number  # parts follow each other in rows as their marks do, head included
     nodes = source.node_count
     modes = marks[_MODES]
+    # The first octave, from u or v = 2^e0 on, has z up to 2^-e0.  Two octaves and POINT_COUNT +
+    # LANES nodes above that the grid ends; its last POINT_COUNT nodes are the points of the slow
+    # row.  So n of node 0 follows from the number of nodes (grid_size).
     lowest = NODES_PER_OCTAVE * (2 - marks[E0]) + 2 * POINT_COUNT + LANES - nodes
     numbers = floats_at(source.numbers, SCRATCH_SIZE + _FUNCTIONS * nodes)
     series = floats_at(marks[_MATERIAL] + 8 * SERIES_START, source.material_size - SERIES_START)
@@ -309,7 +318,7 @@ def _make_functions(part, row, grid):
         epsilon).  Nodes that hold values of another material are computed, and the scratch is
         overwritten.  Returns nothing.
     """
-    over_v = part >= H_OVER_F2
+    over_v = part >= H_OVER_F2  # the parts of single functions, of v, are behind those of pairs
     slow = row == 0
     scratch = grid.scratch
     first = part // PART_SIZE  # column of the (first) function in the grid
@@ -326,12 +335,15 @@ def _make_functions(part, row, grid):
         if slow:
             limit = _slow_limit(function, grid)
         elif _is_times_u(function):  # Values at the nodes are divided by u again.
+            # 1/u at a node: 1 over its fraction of the end of the octave, over that end
             scale = math.ldexp(1.0, int(-grid.e0 - row))
             for k in range(TERMS):
                 scratch[NODE_VALUES + k] *= _INVERSE_NODES[k] * scale
         to_powers(slow, limit, scratch)
         shift = 1 if slow and function == _EPSILON else 0  # the polynomial is that of epsilon/t
         # Coefficients of a pair are interleaved by two: c0 c1 of one, c0 c1 of the other, c2 c3 ...
+        # With ``shift`` the constant is 0 and the highest power of epsilon/t, which to_powers has
+        # set to 0 in Chebyshev form, is left out; row + 1, as the head is in front of row 0.
         to = (row + 1) * ROW_SIZE + part + 2 * which
         grid.rows[to] = 0.0
         for k in range(shift, TERMS):
@@ -362,6 +374,7 @@ def _slow_limit(function, grid):
     """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
+    # epsilon -> u times both sums, and t = u 2^-e0
     if function == _EPSILON:
         return math.ldexp(half_space + cylinder, int(grid.e0))
     if function == _M:
@@ -380,15 +393,18 @@ def _z_of_node(node, grid):
     node : int, index of the node, from 0 to node_count - 1.
     grid : :class:`Grid` of function values over ln z of the selected material.
     Returns a float, > 0, in the unit of time of the material.  Points of the slow row have 1/z
-    between 0 and 2^(e0 + 1) (1 + 2.5 T), T = sum J_j T_j 2^e0 of both bodies, which is a little
-    beyond the end of that row in u and in v; they are zeros of T_36 in 1/z, in Leja's order.
+    between 0 and 2^(e0 + 1) (1 + 2.5 T), T = sum J_j T_j 2^e0 of both bodies, which is beyond the
+    end of that row in u = lam/(2 z), by less than 2.5 T as lam < 1, and at about twice the end in
+    v = (eta/F)/z; they are zeros of T_36 in 1/z, in Leja's order.
     """
-    slow = node - (grid.node_count - POINT_COUNT)
+    slow = node - (grid.node_count - POINT_COUNT)  # index of a point of the slow row; < 0: none
     n = node + grid.lowest
     if slow < 0:
+        # 2^(n/10) by its fraction and its octave; % and // of a negative n round down
         return math.ldexp(_FRACTIONS[n % NODES_PER_OCTAVE], int(n // NODES_PER_OCTAVE))
     end = math.ldexp(1.0, int(grid.e0))
     T_mean = grid.rows[_T_HALF_SPACE] + grid.rows[_T_HALF_SPACE + 1]
+    # the factor beside ``end`` makes up for lam, which falls below 1 with 1/z
     return 0.5 / (end * (1.0 + 2.5 * T_mean * end) * _SLOW_POINTS[slow])
 
 
@@ -420,6 +436,7 @@ def _fill_block(first, grid):
         half_space = work.functions[M_HALF_SPACE + c]
         cylinder = work.functions[M_CYLINDER + c]
         inverse_z = 1.0 / z[c]
+        # lam^-2 = 1 + 2 h/z, eta/F = z/(z + g) and H/F^2 = (eta/F)^2 (1 + 2 h/z)
         inverse_lam = np.sqrt(1.0 + 2.0 * work.functions[H_OVER_Z + c])
         eta_over_F = 1.0 / (1.0 + shift)
         lam = 1.0 / inverse_lam
@@ -451,6 +468,8 @@ def _ensure_nodes(first, stop, grid):
     grid : :class:`Grid` of the selected material, whose ``functions`` and ``node_versions`` are
         written for blocks whose version is not that of the material; others stay.  Returns nothing.
     """
+    # a node never changes within one version, so that a row does not depend on which rows were made
+    # before it
     for block in range(first // LANES, (stop - 1) // LANES + 1):
         if grid.node_versions[block] != grid.version:
             grid.node_versions[block] = grid.version
@@ -471,6 +490,9 @@ def _ln_from_end(node, row, over_v, grid):
     end; it falls with growing ``node``.
     """
     _ensure_nodes(node, node + 1, grid)
+    # ln z + ln of the end of the octave; the sum of integers is exact, so that only one rounding
+    # is left.  ln v = ln(eta/F) - ln z, ln u = ln lam - ln z - ln 2, where ln 2 is an octave of
+    # nodes.
     end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
     if over_v:
         return grid.functions[node, _LN_ETA_OVER_F] - end
@@ -496,20 +518,21 @@ def _collect_points(row, first, count, over_v, grid):
         hold values of another material are computed.  Returns nothing.
     """
     # The node next to the middle of the octave: first by steps of half the distance in ln u or ln
-    # v, then one by one.
+    # v, then one by one.  u and v fall with z, by half an octave to two octaves in one octave of z:
+    # whole distances might go back and forth where it is two.
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
-    node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
-    steps = NODES_PER_OCTAVE
-    while (
-        abs(steps) > 1
-    ):  # u and v fall with z, by half an octave to two octaves in one octave of z
+    node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest  # z is 1/end: v = end where eta/F = 1
+    steps = NODES_PER_OCTAVE  # any number above 1, to enter the loop
+    while abs(steps) > 1:
         steps = int(0.5 * (_ln_from_end(node, row, over_v, grid) - middle) / _STEP)
         node += steps
+    # now to the last node above the middle, whichever side the loop ended on
     while not _ln_from_end(node, row, over_v, grid) > middle:
         node -= 1
     while _ln_from_end(node + 1, row, over_v, grid) > middle:
         node += 1
-    node += 1 - POINT_COUNT // 2
+    node += 1 - POINT_COUNT // 2  # the first of the 36 points
+    # from the middle outwards, the order of the points in Newton's polynomial
     for k in range(POINT_COUNT):
         point = node + _OUTWARDS[k]
         grid.scratch[ARGUMENTS + k] = _ln_from_end(point, row, over_v, grid)
@@ -521,8 +544,8 @@ def _collect_points(row, first, count, over_v, grid):
 
 @kernel
 def _collect_slow_points(first, count, over_v, grid):
-    """Write the 36 points of the slow row, from 1/z near 0 to a little beyond its end, into the
-    scratch of ``grid``: the last 36 nodes of the grid, in Leja's order (:func:`_z_of_node`).
+    """Write the 36 points of the slow row, from 1/z near 0 to beyond its end, into the scratch of
+    ``grid``: the last 36 nodes of the grid, in Leja's order (:func:`_z_of_node`).
 
     Arguments are t = u or v divided by the end of the row, 2^e0.  Values count from the limit t ->
     0 (:func:`_slow_limit`); epsilon is divided by t, and functions that the grid has as products
@@ -543,6 +566,8 @@ def _collect_slow_points(first, count, over_v, grid):
         grid.scratch[ARGUMENTS + k] = x / end
         for which in range(count):
             function = first + which
+            # the slow row is a polynomial in t, through the value at t = 0, for which the products
+            # with u, which vanish there, are of no use; x is u for all of these functions
             scale = x if _is_times_u(function) else x / end if function == _EPSILON else 1.0
             grid.scratch[VALUES + FUNCTION_STRIDE * which + k] = node[
                 function

@@ -110,6 +110,7 @@ def may_be_at_equilibrium(noise, work):
     """
     nodes = work.nodes
     tolerance = equilibrium_tolerance(work.options.rtol)
+    # |p'|/|dp'/dp| <= 2 tolerance |p|, multiplied by -dp'/dp, which is above 0 where it is stable
     return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[
         ROW_P_DIAGONAL
     ] * abs(nodes[ROW_P])
@@ -139,6 +140,7 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
     if regime.sigma * rates.weighted_rate < 0.0 or regime.spin_sign * rates.weighted_rate < 0.0:
         return False, state
     V_off = rates.p_rate / rates.dp_rate_dV  # distance of V from its equilibrium; p is V here
+    # -noise/(dp'/dV) is above 0: the distance that an error ``noise`` of p' explains
     return abs(V_off) <= tolerance * state.V - noise / rates.dp_rate_dV, State(
         state.V - V_off, state.omega_or_d
     )
@@ -226,6 +228,8 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     rates = current_rates(state, regime, step_state, work)
     omega_change = rates.weighted_rate * (end - step_state.tau) if regime.full_slip else 0.0
     nodes = work.nodes
+    # One step to the end of the segment, whose nodes and dense output are written here, so that
+    # outputs and quadratures are those of any step.
     step = Step(
         tau=step_state.tau,
         h=end - step_state.tau,
@@ -267,6 +271,7 @@ def is_coasting(state, regime, step_state, work):
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
     scene = work.scene
+    # the cheapest test first: most states do not reach the others
     return (
         abs(state.omega_or_d) < _COASTING_D * rtol
         and sticks_at_rest(scene.kappa, scene.mu, by_value(scene.law).table)
@@ -336,11 +341,13 @@ def coast_to_end(state, regime, step_state, work):
     rest_speed = rest_threshold(step_state.segment, work)
     end = np.inf
     if rest_speed > 0.0:
+        # exp(-rate time) is the ratio of the speeds; now, where the speed is below already
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
     energies = _energies_of_decay(free, work)
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
-        # exp(-rate time) - 1 without cancellation for short times; ``decay`` is the exponential.
+        # exp(-rate time) - 1 without cancellation for short times; ``decay`` is the exponential,
+        # which for long times, where the sum would cancel, is computed itself.
         expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
         decay = (
             1.0 + expm1_decay
@@ -359,6 +366,7 @@ def coast_to_end(state, regime, step_state, work):
         distance = -direction * state.V * expm1_decay / (rate * scene.gamma)
         energy = 0.5 * state.V * state.V * (-expm1_decay * (1.0 + decay) if moves else 1.0)
         write_quadrature(column, 0, distance, work)
+        # without the creepage beyond delta_0, which is of the order of V: its angle is negligible
         write_quadrature(column, 1, distance * omega_over_V, work)
         for n in range(2, N_QUADRATURES):
             write_quadrature(column, n, energies[n - 2] * energy, work)

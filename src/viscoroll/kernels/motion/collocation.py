@@ -115,6 +115,7 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     are read before.  A NaN or inf in the row makes the whole product NaN or inf, even where the
     matrix is 0.  Returns nothing.
     """
+    # ``low`` has rows 0 ... 3 of the product, ``high`` rows 4 ... 7: a column times a number each
     low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
         x = broadcast(values[row + k] - offset)
@@ -139,6 +140,8 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     matrix: pointer to ROW_LENGTH^2 numbers, of which columns 1 ... N are written; column 0 keeps
     its values, 0 from the start of the motion.  Returns nothing.
     """
+    # weights of rows 0 ... 3 and 4 ... 7; row 0 of DIFFERENTIATION and of columns 1 ... N of the
+    # identity is 0, so that the entry of node 0 becomes 0
     low = load(nodes, weights)
     high = load(nodes, weights + LANES)
     for k in range(1, ROW_LENGTH):
@@ -280,6 +283,7 @@ def evaluate_dense_output(v, nodes, row):
     row: int, index in ``nodes`` of the first of the ROW_LENGTH coefficients of
     :func:`fit_dense_output`.
     """
+    # Horner's scheme in t; the last coefficient is the 0 that fills the row
     t = v - 1.0
     value = 0.0
     for k in range(ROW_LENGTH - 1, -1, -1):
@@ -315,6 +319,7 @@ def row_range(row, nodes):
     Returns (smallest, largest), floats in the unit of the row.  Both are NaN if node 0 is; a NaN at
     another node is passed over.
     """
+    # a NaN is passed over in the second argument of min and max, and kept in the first
     smallest = largest = nodes[row]
     for i in range(1, N + 1):
         smallest = min(smallest, nodes[row + i])

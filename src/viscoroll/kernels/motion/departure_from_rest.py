@@ -90,6 +90,7 @@ def _residual_of_d(d, load, scene):
     Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of
     ``load``, of either sign.
     """
+    # Eq. (22) at V = 0: friction pulls the axis by ``axis`` and takes the torque ``spin``
     axis, spin, axis_dd, spin_dd = pull_at_rest(d, scene)
     V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (load.torque - spin) + load.prescribed_omega_rate
@@ -139,9 +140,10 @@ def _spin_against_brake(load, scene):
     sign is to be ignored.
     """
     d_zero = _d_at_zero_omega(scene)
-    load = _effective_load(load, 0.0, scene)
+    load = _effective_load(load, 0.0, scene)  # without the brake, whose torque is compared below
     if d_zero <= -1.0:
         return 1.0, False
+    # torque that is left at omega = 0: that of the motor less what the traction there takes
     torque = load.torque - pull_at_rest(d_zero, scene)[1]
     return np.sign(torque), abs(torque) <= load.brake
 
@@ -210,7 +212,9 @@ def _local_maximum_of_residual(load, scene):
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
     first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
     second = -stiffness - 2.0 * scene.mu * load.inverse_mass
-    # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0.
+    # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0;
+    # first/(sqrt(discriminant) - second) is that root without cancellation, and for inverse_mass =
+    # 0 too.
     discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
     return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
 
@@ -252,6 +256,7 @@ def solve_d_at_departure(load, spin_sign, scene):
     V_rate = 0.0
     for _ in range(_MAX_ITERATIONS):
         residual, slope, V_rate = _residual_of_d(d, load, scene)
+        # the residual falls through 0 in the bracket: the root is above d where it is positive
         low, high = (d, high) if residual > 0.0 else (low, d)
         d_next = d - residual / slope
         if not low < d_next < high:  # Outside the bracket, or NaN.
@@ -340,17 +345,18 @@ def holding_margin(load, scene):
         return -1.0
     mu *= 1.0 + _HOLDING_ROUNDING
     brake = load.brake * (1.0 + _HOLDING_ROUNDING)
-    if load.inverse_mass == 0.0:
+    if load.inverse_mass == 0.0:  # V is prescribed to stay 0
         if by_value(scene.law).cover_rows is None:
             return mu + brake - abs(load.torque)
         return mu - _traction_of_torque_at_rest(max(abs(load.torque) - brake, 0.0), scene)
     Q, torque = _traction_at_rest(load.force, scene)
-    if load.inverse_inertia == 0.0:
+    if load.inverse_inertia == 0.0:  # omega is prescribed to stay 0
         return mu - Q
     # Modulus of the torque that is left for the brake.
     rest = abs(np.copysign(torque, load.force) + load.torque)
     # Of half-spaces loads in balance cancel to exactly 0; of a cover to rounding.
     noise = 0.0 if by_value(scene.law).cover_rows is None else _HOLDING_ROUNDING * torque
+    # A smaller ``rest`` counts as 0: without a brake the margin is then 0, which holds.
     margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE + noise else 0.0))
     return balance_of_table(load, scene.kappa, mu, margin, by_value(scene.law).table)
 
@@ -392,6 +398,8 @@ def find_departure_time(tau, segment, work):
     if is_constant(segment, work.drive):
         return end if _holding_margin_at(tau, segment, work) >= 0.0 else tau
     low = tau
+    # the cylinder stays at ``low`` and moves at ``high``; the bisection ends where no time is
+    # between
     for n in range(1, _SCAN_INTERVALS + 1):
         high = tau + (end - tau) * n / _SCAN_INTERVALS
         if _holding_margin_at(high, segment, work) < 0.0:
@@ -447,8 +455,10 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
         )
         if locked:
             omega_rate = 0.0
+        # |d + c d^2| at d = sigma is 1 + sigma c, 1 of half-spaces
         onset = stick_zone_slip * L * abs(creep_at_rest(sigma, scene).value)
         if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > onset * abs(V_rate):
+            # signs so far are those of direction 1: mirrored where V falls below 0
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return (
                 SLIDES_OFF,
@@ -489,6 +499,8 @@ def depart_from_rest(tau, segment, work):
     scene = work.scene
     tau_drive = tau
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
+    # A drive that holds the cylinder, or is in balance with it to rounding, at ``tau``, where its
+    # segment begins or the cylinder was found to depart: its change tells what follows.
     rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
     if holding_margin(load, scene) >= -rounding and not is_constant(segment, work.drive):
         # Whether the drive moves the cylinder is decided by its values a little later.
@@ -507,6 +519,8 @@ def depart_from_rest(tau, segment, work):
         load = evaluate_load(tau_drive, segment, regime, work)
         spin_sign, locked = _spin_against_brake(load, scene) if braked else (0.0, False)
         if locked:
+            # delta = -1 of a locked cylinder that moves: d < 0, so that sigma is -1; its load has
+            # an inverse_inertia of 0
             regime = Regime(
                 full_slip=False, direction=direction, sigma=-1.0, spin_sign=0.0, locked=True
             )
@@ -516,7 +530,8 @@ def depart_from_rest(tau, segment, work):
         if sticks and kind == ROLLS_OFF:
             return AMBIGUOUS, REGIME_AT_REST, 0.0
         if sticks:
-            # The motion departs from d at the present time.
+            # The motion departs from d at the present time, where it may be 0: sigma is the sign
+            # that d has a little later.
             load = evaluate_load(tau, segment, regime, work)
             kind = ROLLS_OFF
             d_start = solve_d_at_departure(load, spin_sign, scene)[1]
@@ -529,6 +544,8 @@ def depart_from_rest(tau, segment, work):
             )
             if scene.mu <= 2.0 * scene.kappa:  # The residual decreases: there is no other root.
                 return kind, departure, d_start
+    # Where the cylinder may roll off, sliding is a second motion only if its slip exceeds that of
+    # the onset of full slip; else any slip in the direction of sigma will do.
     stick_zone_slip = 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa
     slides = _slide_from_rest(tau_drive, segment, braked, stick_zone_slip, work)
     if kind == STAYS_AT_REST:

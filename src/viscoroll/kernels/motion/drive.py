@@ -117,6 +117,7 @@ def evaluate_drive(tau, segment, drive):
     """
     row = drive.segments[segment]
     x = (tau - row[COL_START]) * row[COL_SCALE] - 1.0
+    # without a prescribed speed its coefficients are not read
     rate = evaluate_polynomial(row, DRIVE_RATE, x) if drive.prescribed != NOT_PRESCRIBED else 0.0
     return (
         evaluate_polynomial(row, DRIVE_FORCE, x),
@@ -215,6 +216,7 @@ def store_drive(step, work):
     nodes = work.nodes
     if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.
         return
+    # of a constant drive one evaluation serves all nodes
     values = evaluate_drive(step.tau, step.segment, work.drive)
     changes = not is_constant(step.segment, work.drive)
     for i in range(N + 1):
@@ -236,6 +238,8 @@ def load_at_node(i, regime, work):
     too.
     """
     nodes = work.nodes
+    # rows in the order DRIVE_FORCE, DRIVE_TORQUE, DRIVE_RATE, DRIVE_BRAKE, as store_drive writes
+    # them
     values = (
         nodes[ROW_DRIVE + i],
         nodes[ROW_DRIVE + ROW_LENGTH + i],
@@ -330,6 +334,7 @@ def is_constant(segment, drive):
     row = drive.segments[segment]
     variation = 0.0  # sum of the moduli of all coefficients of x and its powers
     terms = n_coefficients(row)
+    # the functions that are stored at nodes come first; n % terms is the power of a coefficient
     for n in range(N_NODE_FUNCTIONS * terms):
         variation += abs(row[COL_COEFFICIENTS + n]) if n % terms > 0 else 0.0
     return variation == 0.0

@@ -213,6 +213,7 @@ def _relaxes_within_rounding(state, regime, step_state, work):
     if regime.full_slip:
         return False
     rates = current_rates(state, regime, step_state, work)
+    # V over the moduli, multiplied out: they may be 0
     return state.V < _TIME_ROUNDING * step_state.tau * max(
         abs(rates.drate_dd), abs(rates.weighted_rate)
     )
@@ -232,6 +233,7 @@ def _vanishes_within_rounding(state, regime, step_state, work):
     """
     if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
         return True
+    # V/|V'| below 1e-13 tau, multiplied out with the sign of V': False for V' >= 0
     return (
         state.V
         < -_TIME_ROUNDING * step_state.tau * current_rates(state, regime, step_state, work).V_rate
@@ -271,7 +273,7 @@ def relax_creep(state, regime, step_state, work):
     d = 0.0
     low = -1.0
     high = 1.0
-    while low < d < high:
+    while low < d < high:  # until the middle is rounded to an end
         delta = creepage(state.V, d, work.scene)
         state = State(p / (inertia + load.inverse_mass * (1.0 + delta)), d)
         regime = change_slip(regime, False, 1.0 if d >= 0.0 else -1.0)
@@ -327,6 +329,7 @@ def _advance_segment(moving, state, regime, step_state, work):
             record_switch(DIRECTION_REVERSED, step_state, work)
         # In partial slip omega is 0 where V is 0.
         moving = state.V != 0.0 or (regime.full_slip and state.omega_or_d != 0.0)
+    # one segment a call: the caller's loop enters others that end at the same time
     return moving, state, regime, step_state
 
 
@@ -351,6 +354,7 @@ def _come_to_rest(code, state, regime, step_state, work):
     if code >= 0 and code != AT_REST:
         record_switch(AT_REST, step_state, work)
     nodes[REST_TIME] = step_state.tau / work.scene.gamma
+    # so that energies balance: what is left, in units of m (R/T_epsilon)^2, counts as rolled away
     nodes[QUADRATURE_TOTALS + ROLLING_LOSS] += 0.5 * (
         state.V * state.V + work.scene.j * omega * omega
     )
@@ -433,6 +437,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             )
         if event == BELOW_REST_SPEED:
             return CAME_TO_REST, _come_to_rest(code, state, regime, step_state, work)
+        # ``regime`` is still the one that the event ends
         stick_formed = event == STICK_EDGE and regime.full_slip
         if event == STEP_FAILED:
             # Where d relaxes faster than time resolves it is set to its equilibrium, once at a
@@ -444,6 +449,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             relaxed_at = step_state.tau
             moving, state, regime, step_state = relax_creep(state, regime, step_state, work)
             continue
+        # An event of exhausted added mass is not applied: the next turn of the loop ends the
+        # motion.
         if event != NO_EVENT and not added_mass_exhausted(event, state, regime, work):
             moving, state, regime = apply_event(event, state, regime, step_state, work)
             # At d = 0 the law is smooth but for its second derivative, so that the length of the
@@ -453,6 +460,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             )
         if moving and code >= 0 and regime.direction != direction:
             record_switch(DIRECTION_REVERSED, step_state, work)
+        # A cylinder that an event has brought to V = 0 may depart again at this time: its code is
+        # recorded in the next turn, when that is decided.
         if moving or event == NO_EVENT:
             new_code = regime_code(regime) if moving else rest_code(step_state, work)
             code = _record_regime(
@@ -556,6 +565,8 @@ def _drive_of_motion(drives, gamma, i, segments):
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
     for k in range(segments.shape[0]):
         copy(source[k], segments[k])
+        # x = (tau - start) scale - 1 stays the same number, and so do the coefficients of functions
+        # of it; d(speed)/dtau = d(speed)/dt/gamma
         segments[k, COL_START] *= gamma
         segments[k, COL_SCALE] /= gamma
         n_terms = n_coefficients(segments[k])
@@ -606,6 +617,9 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
     p_matrix = np.empty(ROW_LENGTH * ROW_LENGTH)
     d_matrix = np.empty(ROW_LENGTH * ROW_LENGTH)
     for i in range(out.shape[1]):
+        # As before the first motion, so that no bit depends on which motion came before: NaN for
+        # outputs that are not reached; 0 for column 0 of the matrices and for the drive of an
+        # undriven motion, which nobody writes.
         for row in quantities:
             fill(np.nan, row)
         for array in (nodes, p_matrix, d_matrix):

@@ -173,7 +173,7 @@ def _first_negative_node(event, last, nodes):
     Returns an int, 1 ... ``last``, or 0.  A value of exactly 0 is neither positive nor negative,
     and a NaN is passed over; one at node 0 makes the result 0.
     """
-    smallest, largest = row_range(event, nodes)
+    smallest, largest = row_range(event, nodes)  # both are NaN if node 0 is
     if not smallest < 0.0:  # The usual case, and a NaN at node 0.
         return 0
     # Whether the function has been positive at a node so far.
@@ -204,6 +204,7 @@ def locate_zero(event, node, nodes):
     before that position.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
+    # v = 1 + t; the interpolant leaves out the value at node 0, which is passed
     low, high = (
         (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
     )
@@ -239,7 +240,8 @@ def _find_interpolant_zero(start, low, high, nodes):
             break
         f = start + evaluate_dense_output(v, nodes, ROW_DENSE_EVENT)
         if f > 0.0:
-            # The end that stays counts less, so that it moves too.
+            # The end that stays counts less, so that it moves too: by 1 less the ratio of the last
+            # two values of the other end, or by half where that ratio is 1 or more.
             f_high *= 1.0 - f / f_low if f < f_low else 0.5
             low = v
             f_low = f
@@ -268,9 +270,10 @@ def _locate_double_crossing(event, nodes):
     for i in range(1, N):
         if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
             fit_dense_output(event, ROW_DENSE_EVENT, nodes)
-            start = 1.0 + NODES[i - 1]
+            start = 1.0 + NODES[i - 1]  # where the function is still positive
             low = 1.0 + NODES[i - 1]
             high = 1.0 + NODES[i + 1]
+            # the constant of the interpolant has no effect on the comparison
             for _ in range(_TERNARY_STEPS):
                 third = (high - low) / 3.0
                 if evaluate_dense_output(
@@ -304,6 +307,7 @@ def find_first_event(step, regime, work):
     last = N  # node after the zero of the first event so far: a later one cannot be first
     v = 2.0
     nodes = work.nodes
+    # codes of events are indices of rows, which lie between these two, one row apart
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
         node = (
             _first_negative_node(candidate, last, nodes)
@@ -313,6 +317,7 @@ def find_first_event(step, regime, work):
         if node == 0:
             continue
         v_zero = locate_zero(candidate, node, nodes)
+        # node is at most ``last``: before it, or between the same nodes as the first event so far
         if event == NO_EVENT or node < last or v_zero < v:
             event = candidate
             last = node
@@ -385,7 +390,7 @@ def _event_function(event, v, regime, work):
     BELOW_REST_SPEED and spin_sign (1 + delta) for OMEGA_ZERO; positive within the regime.
     """
     V, omega_or_d = dense_state(v, work.nodes)
-    if event == BELOW_REST_SPEED:
+    if event == BELOW_REST_SPEED:  # in full slip, where the second unknown is omega
         return max(abs(V), abs(omega_or_d)) - work.options.rest_speed
     if event == OMEGA_ZERO:
         return regime.spin_sign * (1.0 + creepage(V, omega_or_d, work.scene))
@@ -414,6 +419,7 @@ def refine_event(event, v, regime, work):
         (STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)
     ):
         return v
+    # the difference quotient is ``difference`` over 2 _SECANT_OFFSET
     difference = _event_function(event, v + _SECANT_OFFSET, regime, work)
     difference -= _event_function(event, v - _SECANT_OFFSET, regime, work)
     for _ in range(_SECANT_STEPS):
@@ -473,6 +479,7 @@ def ends_at_event(event, nodes, rtol):
     scale = _event_scale(event, nodes)
     last = nodes[event + N]
     (_, largest) = row_range(event, nodes)
+    # it has fallen, it was above rounding, and it is 0 to the tolerance; False for NaN
     return (
         last < largest
         and largest > _EDGE_ROUNDING * scale

@@ -115,6 +115,8 @@ def full_slip_integrals(V, level, flow):
     row, t, _ = locate_octave(flow.kappa * speed, flow_layout.LOW)
     if row == 0:
         return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
+    # row 0 of locate_octave is below the tables, which begin with row 1: first all octaves of V >
+    # 0, then as many of V < 0
     at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * _SLIDE
     T, limit = evaluate_pair(flow.table, at, t)[:2]
     X = evaluate_single(flow.table, at + flow_layout.SLIDE_X, t)[0] if level >= PATH else 0.0
@@ -156,7 +158,7 @@ def slide_distance(start, tau, flow):
     0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
     """
     T, X = start
-    if tau > _SHORT * abs(T):
+    if tau > _SHORT * abs(T):  # X of the speed reached less X of the start
         return full_slip_integrals(speed_at_slide_time(T + tau, flow), PATH, flow)[1] - X
     x = 0.0
     for n in range(_GAUSS_X.size):
@@ -187,6 +189,7 @@ def read_onset(I, level, flow):
     if not LOWEST <= x < HIGHEST:  # True for NaN too.
         return 0.0, 0.0, 0.0
     row, t, _ = locate_octave(x, flow_layout.LOW)
+    # row - 1, as the tables begin with the octave above LOW; those of V > 0 at the onset are first
     at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
     V, T = evaluate_pair(flow.table, at, t)[:2]
     X = evaluate_single(flow.table, at + flow_layout.ONSET_X, t)[0] if level >= PATH else 0.0
@@ -206,6 +209,7 @@ def _locate_on_manifold(slow_log):
     and the factor is exp(slow_log - lowest), by which these quantities fall; it may underflow to 0.
     """
     if slow_log >= 0.0:  # Octaves of 1 + slow_log; below 0 bins of one width.
+        # 1 is the begin of row 1 for e0 = 0; the octaves follow the bins in the table
         row, t, _ = locate_octave(1.0 + slow_log, 0)
         return STARTS.slow + (flow_layout.SLOW_BINS + row - 1) * _SLOW, t, 1.0
     share = 1.0  # the factor
@@ -213,7 +217,7 @@ def _locate_on_manifold(slow_log):
         share = np.exp(slow_log - _LOWEST_SLOW_LOG)
         slow_log = _LOWEST_SLOW_LOG
     place = (slow_log - _LOWEST_SLOW_LOG) * (1.0 / flow_layout.SLOW_WIDTH)
-    row = min(np.int64(place), flow_layout.SLOW_BINS - 1)
+    row = min(np.int64(place), flow_layout.SLOW_BINS - 1)  # rounding may leave the end of the bins
     return STARTS.slow + row * _SLOW, 2.0 * (place - row) - 1.0, share
 
 
@@ -269,6 +273,7 @@ def manifold_path(start, span, rate, table):
         x, angle = _remaining_path(start, table)
         x_left, angle_left = _remaining_path(end, table)
         return x - x_left, angle - angle_left
+    # dx = V dtau with dtau = -d(slow logarithm)/rate
     x = angle = 0.0
     for n in range(_GAUSS_X.size):
         V, delta = manifold_speeds(end + span * _GAUSS_X[n], table)
@@ -330,6 +335,7 @@ def read_asymptote(family, v, level, flow):
     the onset to rest, of either sign.
     """
     table = flow.table
+    # onsets are tabulated from 2^first on, which is the begin of row 1; PLUS first, then MINUS
     row, t, _ = locate_octave(v, flow.first)
     at = STARTS.asymptote + (row - 1 + family * _ONSET_OCTAVES) * _ASYMPTOTE_SIZE
     slow_log, rate = evaluate_pair(table, at, t)[:2]
@@ -375,6 +381,7 @@ def locate_in_layer(family, v, u, flow):
     """
     row, t, _ = locate_octave(v, flow.first)
     part, s, _ = locate_octave(u, flow_layout.LAYER_LOW)
+    # the layout of FlowTables.layer: family, octave of v, octave of u; rows count from 1 in both
     return (
         STARTS.layer + (((row - 1 + family * _ONSET_OCTAVES) * _LAYER_OCTAVES) + part - 1) * _LAYER,
         t,
@@ -462,6 +469,7 @@ def layer_state(stick, asymptote, elapsed, level, flow):
     at, t, s = locate_in_layer(stick.family, stick.v, layer_coordinate(E, asymptote.split), flow)
     V0 = stick.v / flow.kappa
     x = angle = loss = 0.0
+    # the table has what exceeds constant V0, in units of V0/k0: E is the path at constant V0
     if level >= PATH:
         scale = V0 / asymptote.rate
         x = scale * (E + layer_value(table, flow_layout.LAYER_X, at, t, s))
@@ -485,6 +493,7 @@ def slow_log_at_rest(rest, flow):
     counts as 0, that of their lowest V plus the logarithm of the ratio of the speeds.
     """
     rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
+    # the fixed point of V = rest/(1 + max(delta(V), 0)), where the larger speed is the threshold
     for _ in range(4):
         v = flow.kappa * V
         V = rest / (1.0 + max(manifold_at_speed(v, flow.table)[1] if v >= LOWEST else 0.0, 0.0))

@@ -108,7 +108,7 @@ def _initial_u(size, slow, turns):
     Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction is 1 - r^2,
     so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
     """
-    traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)
+    traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)  # on the slow manifold, over mu
     a = np.sqrt(1.0 - traction)
     # From r = 0 at the onset, E = ln((a + r)/(a - r))/a; r = 1 at the split.  1e-14 keeps the
     # logarithms finite where the start is on the manifold.
@@ -116,11 +116,13 @@ def _initial_u(size, slow, turns):
         r = 1.0 - size
         E = np.log((a + r) / max(a - r, 1e-14)) / a
         split = np.log((a + 1.0) / max(a - 1.0, 1e-14)) / a if turns else 1.0
+        # the layer coordinate of E (flow_lookup.layer_coordinate)
         return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
     # Beyond delta = 0 the traction is r^2 - 1, and r falls from 1 to b, its value on the manifold:
     # dr/dE = -(r^2 - b^2)/2.
     r = 1.0 + size
-    b = max(1.0 + slow, 1e-3)
+    b = max(1.0 + slow, 1e-3)  # not 0, by which is divided; it is a first guess
+    # u = 1 at r = 1, where delta = 0; u then grows as E
     return 1.0 + np.log((1.0 - b) / (1.0 + b) * (r + b) / max(r - b, 1e-14)) / b
 
 
@@ -178,6 +180,8 @@ def find_onset(V, delta, edge, flow):
     v0 = v
     ln_v0 = 0.0
     change = np.inf
+    # the test of convergence follows the evaluation, so that ln_V and creep belong to the last v0
+    # and u
     for _ in range(_MAX_ITERATIONS):
         u = _clamp(u, _LOWEST_U, _HIGHEST_U)
         at, t, s = locate_in_layer(family, v0, u, flow)
@@ -189,7 +193,7 @@ def find_onset(V, delta, edge, flow):
         # table has passed the manifold (or NaN) u is brought nearer to the onset.
         away = (creep - slow) / gap
         if not away > 0.0:
-            u = 0.5 * (u + _LOWEST_U)
+            u = 0.5 * (u + _LOWEST_U)  # ``change`` stays: the iteration has not converged
             continue
         # Slopes in ln v0 and u: s and t are 4 m - 3 with the mantissa m of v0 and of u.
         per_v = t + 3.0
@@ -204,6 +208,8 @@ def find_onset(V, delta, edge, flow):
         c = creep_t * per_v * inverse_difference
         d = creep_s * per_u * inverse_difference
         determinant = a * d - b * c
+        # Newton's step by Cramer's rule; v0 stays inside of the tabulated onsets, whose end is not
+        # among them
         shift = (first * d - b * second) / determinant
         step = (a * second - c * first) / determinant
         v0 = _clamp(v * np.exp(ln_v0 - shift), lowest, 0.99 * highest)
@@ -212,6 +218,7 @@ def find_onset(V, delta, edge, flow):
         # The errors that are left are about the squares of these: of delta gap second^2.
         change = abs(shift) + abs(second) * np.sqrt(abs(gap))
     split = read_asymptote(family, v0, SPEEDS, flow).split
+    # E of u: the inverse of flow_lookup.layer_coordinate
     E = (u - _LOWEST_U) / (1.0 - _LOWEST_U) * split if u < 1.0 else u - 1.0 + split
     found = abs(v0 * np.exp(ln_V) - v) <= _RESIDUAL * v and abs(creep - delta) <= _RESIDUAL
     if found and E <= flow_layout.LAYER_END:
@@ -309,9 +316,12 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
     v = flow.kappa * abs(V_on)
     covered = 2.0**flow.first <= v < 2.0 ** (flow.first + OCTAVES)
     covered = covered and flow.kappa * max(abs(V), abs(omega)) <= _MAX_SPEED_RATIO * v
+    # the map counts both from V = 0: differences; rounding may leave a start just after its onset
     tau = max(T_on - T, 0.0)
     x = X_on - X
     angle = (x - tau * (w + mu * tau)) / flow.j
+    # omega > V in the mirrored frame; where V < 0 at the onset it is mirrored once more, so that V
+    # > 0, and omega is below it
     family, frame_on = (PLUS, frame) if V_on > 0.0 else (MINUS, -frame)
     stick = StickOnset(
         frame=frame_on,
@@ -347,6 +357,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
     if E > LAYER_END or not covered:
+        # tau is so small, by the rate of this asymptote, that the layer ends at tau = 0, the start
         asymptote = asymptote_on_manifold(manifold_at_speed(v, flow.table)[0] if covered else 0.0)
         return (
             StickOnset(
@@ -405,7 +416,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     frame, w, T0, X0 = slide
     while at < tau_out.size and tau_out[at] < until:
         tau = tau_out[at]
-        V = speed_at_slide_time(T0 + tau, flow)
+        V = speed_at_slide_time(T0 + tau, flow)  # T counts from V = 0, and is T0 at the start
         # From V - j omega = w + 2 mu tau and its integral over tau.
         omega = (V - (w + 2.0 * mu * tau)) * per_j
         x = angle = 0.0
@@ -449,6 +460,8 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     left.
     """
     frame = stick.frame
+    # slip loss from the onset to rest: that of the asymptote, and the excess over it; the loss so
+    # far is this less what remains
     total_loss = (
         remaining_slip_loss(asymptote.slow_log, flow.table) + asymptote.loss
         if level >= LOSS
@@ -513,6 +526,8 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     rest_time = np.inf
     end = tau_out[tau_out.size - 1]
     if request.rest > 0.0:
+        # the slow logarithm falls linearly from that of the asymptote at the onset; the formula
+        # holds on the slow manifold alone, after the layer
         rest_time = stick.tau + (asymptote.slow_log - request.rest_slow_log) / flow.slow_rate
         if rest_time < max(layer_end, 0.0):
             return NOT_COVERED, np.nan
@@ -575,7 +590,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     at = 0
     first = FULL_SLIP
     T, X, limit = full_slip_integrals(V, level, flow)
-    starts_in_full_slip = omega - V >= limit
+    starts_in_full_slip = omega - V >= limit  # limit: delta_star |V|
     if starts_in_full_slip:
         slide, stick, covered = _start_in_full_slip(frame, V, omega, (T, X), level, flow)
     else:
@@ -631,10 +646,11 @@ def look_up_motions(flow, motions, result, start, stop):
     Returns nothing.
     """
     gamma, rest, V0, omega0, t, rows = motions
-    one = np.empty((ROWS, t.size))
+    one = np.empty((ROWS, t.size))  # outputs of one motion, of which the requested rows are copied
     tau = t * gamma
     j = flow.j
     level = SPEEDS
+    # the highest level that a requested row needs; the rolling loss needs the slip loss
     for n in range(rows.size):
         level = max(
             level,
@@ -660,7 +676,7 @@ def look_up_motions(flow, motions, result, start, stop):
                 one[ROLLING_LOSS, m] = lost - one[SLIP_LOSS, m]
         result.onset[i] = onset / gamma
         result.rest[i] = rest_time / gamma
-        result.switches[i] = 1 if onset >= 0.0 else 0
+        result.switches[i] = 1 if onset >= 0.0 else 0  # 0 for NaN
         for n in range(rows.size):
             row = rows[n]
             scale = 1.0 / gamma if row == _X or row == _ANGLE else 1.0

@@ -89,7 +89,7 @@ def _evaluate_N(u, law):
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
     alpha = law.rows[ALPHA]
-    if row < count:
+    if row < count:  # a row of N_rows is a pair, N and its integral, and has no head in front
         N, integral, slope, _, _, _ = evaluate_pair(law.N_rows, row * 2 * TERMS, t)
         return row, N, integral, slope * dt_dx
     # N = (alpha - 1)/(16 alpha u^2): its integral from infinity is -N u, its slope -2 N/u.
@@ -264,7 +264,9 @@ def _change_of(Q, pairs, L, dL, scene):
 def _change_of_cover(Q, pairs, L, dL, scene, cover_rows):
     """Return what :func:`_change_of` does.
 
-    Q, pairs, L, dL, scene: as of :func:`_change_of`.
+    Q: float, traction, dimensionless.
+    pairs, L, dL: fields of :class:`SpeedFunctions`, not read for half-spaces.
+    scene: Scene, of which kappa and mu are read, of a cover alone.
     cover_rows: those of the law, None of half-spaces, by whose type numba compiles one of the two
     branches.
     """
@@ -294,6 +296,8 @@ def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, functions, scene):
     scene: Scene, of which kappa and mu are read, of a cover alone.
     """
     change = _change_of(Q, functions.pairs, functions.L, functions.dL, scene)
+    # M = V m(u) + change(Q, u): slopes of the first are given in V; the second depends on V by u
+    # and by Q, on d by Q alone
     return Loads(
         Q=Q,
         Q_dV=dQ_dV,
@@ -330,6 +334,7 @@ def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
     by_shear = V * change.half_space + omega * change.cylinder
     table = by_value(scene.law).table
     by_shear = friction_by_shear(V, omega, Q, scene.kappa, scene.mu, by_shear, table)
+    # what friction takes beside (omega - V) Q, the bodies do not take: the sum stays
     return (omega - V) * Q + by_shear, V * M_half_space + omega * M_cylinder - by_shear
 
 
@@ -396,6 +401,7 @@ def rest_limits(scene, sigma=1.0):
     """
     law = by_value(scene.law)
     L, delta_0 = limits_at_rest(scene.kappa, law)
+    # the middle creep 2 kappa delta_0 stands for delta_0, which a table replaces by its own
     rows = Width(
         L=L, dL=0.0, ddL=0.0, middle=2.0 * scene.kappa * delta_0, dmiddle=0.0, ddmiddle=0.0
     )
@@ -437,6 +443,7 @@ def _slow_law(sigma, scene):
     sigma: float, side of d, 1.0 or -1.0, on which that of a table depends.
     scene: Scene, of which ``law`` and, of a cover or a table, kappa and mu are read.
     """
+    # Q_V = 0, as on rows Q is 0 at d = 0; creep_V = 0, as the change of delta_0 with V is left out
     functions = evaluate_moments(0.0, scene)
     reaction = reaction_at_rest(scene)
     rows = SlowLaw(
@@ -453,8 +460,11 @@ def _slow_law(sigma, scene):
 
 @inline_kernel
 def _decay_on_side(sigma, work):
-    """Return (:class:`FreeDecay`, whether d lies on the side sigma) by the law of this side;
-    arguments as of :func:`_slow_law` and :func:`free_decay`.
+    """Return (:class:`FreeDecay`, whether d lies on the side sigma, a bool) by the law of this
+    side; the formulas are those of :func:`free_decay`.
+
+    sigma: float, side of d, 1.0 or -1.0, on which the law of a table depends.
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
     """
     scene = work.scene
     slow = _slow_law(sigma, scene)
@@ -462,15 +472,16 @@ def _decay_on_side(sigma, work):
     spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
     on_axis = 1.0 + slow.reaction_half_space
     on_spin = 1.0 - slow.reaction_cylinder
-    n = added_inertia(0.0, scene)[0]
+    n = added_inertia(0.0, scene)[0]  # 0 of covers
     inertia = on_spin + spin_inertia * on_axis + n
-    if on_axis == 1.0 and on_spin == 1.0:  # half-spaces
+    if on_axis == 1.0 and on_spin == 1.0:  # half-spaces: the same sum, in another order
         rate = (slow.half_space + slow.cylinder - force - torque) / inertia
     else:
         axis_loss = on_spin * (slow.half_space - force)
         rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
     Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
     Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
+    # Q_V is Q/V at d = 0, so that Q above it means d > 0; at equality both sides serve
     decay = FreeDecay(rate=rate, Q=Q, creep=slow.creep_V + slow.creep_Q * Q)
     return decay, sigma * (Q - slow.Q_V) >= 0.0
 
@@ -517,6 +528,7 @@ def _leverage(used, scene):
     reaction = reaction_at_rest(scene)
     on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
     on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
+    # Q (a + e |Q|/mu) has the derivative a + 2 e |Q|/mu in Q: once more the term of the excess
     return (
         on_axis,
         on_spin,
@@ -567,7 +579,7 @@ def speeds_after_sliding(V, omega, scene):
     c = asymmetry_at_rest(scene)
     # Sign of the creepage less delta_0; a product of the two least speeds would underflow to 0.
     side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0
-    limit = _limit_at_rest(side, scene)
+    limit = _limit_at_rest(side, scene)  # |delta - delta_0| at d = side without c d^2
     left = np.inf  # |d| at which the integral over d begins; above 1 in full slip
     if V != 0.0:
         left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
@@ -576,14 +588,20 @@ def speeds_after_sliding(V, omega, scene):
     if left > 1.0:  # Full slip: V b + j omega a is kept until omega/V is that of |d| = 1.
         left = 1.0
         on_axis, on_spin, _, _ = pull_at_rest(side, scene)
+        # what is kept, with the signs of Q on the axis and on the cylinder, which are those of
+        # ``side`` in pull_at_rest
         kept = side * (V * on_spin + j * omega * on_axis)
+        # the side in the end: ``kept`` has the sign of V there, omega - free V keeps its own
         turned = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
-        if turned != side:  # V passes through 0, from where on a and b are those of the other side.
+        # V passes through 0, from where on a and b are those of the other side.  There j omega a is
+        # all of what is kept: it changes with a, as omega stays.
+        if turned != side:
             kept /= abs(on_axis)
             on_axis, on_spin, _, _ = pull_at_rest(turned, scene)
             kept *= abs(on_axis)
             side = turned
             limit = _limit_at_rest(side, scene)
+        # V b + j omega a with omega/V at |d| = 1, where d + c d^2 = side + c
         V = kept / (abs(on_spin) + j * abs(on_axis) * (free + limit * (side + c)))
     for place, weight in _GAUSS:
         d = side * left * place
@@ -662,6 +680,7 @@ def reduced_slip(slip, limit, V, sigma, scene):
     part = slip / limit
     if by_value(scene.law).cover_rows is None:
         return part
+    # limit is delta_star |V| (1 + sigma c): from here on the excess is divided by delta_star |V|
     c = _asymmetry_at_speed(V, scene)
     return reduced_creep(part * (1.0 + sigma * c), c)
 
@@ -676,6 +695,7 @@ def creepage(V, d, scene):
     scene: Scene, of which kappa, mu and ``law`` are read.
     Returns a float, dimensionless; omega = V (1 + delta) follows from it.
     """
+    # the side of d, which L of a table depends on; d = -0.0 is on the side -1, where the term is 0
     width = _width(V, np.copysign(1.0, d), scene)
     creep = _creep_over_L(V, d, scene)
     return 0.5 * scene.mu / scene.kappa * width.L * creep + 0.5 / scene.kappa * width.middle
@@ -728,6 +748,7 @@ def omega_and_delta(state, regime, scene):
         delta = creepage(state.V, state.omega_or_d, scene)
         return state.V * (1.0 + delta), delta
     slip = state.omega_or_d - state.V
+    # at V = 0 infinite, also for omega = 0, where law_record.slip_and_creepage has 0
     return state.omega_or_d, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
 
 
@@ -767,7 +788,7 @@ def stick_edge_function(V, omega_or_d, regime, scene):
     Returns a float, dimensionless: in full slip a speed, in partial slip a part of the critical
     creepage.
     """
-    if not regime.full_slip:
+    if not regime.full_slip:  # one function for both ends; added_mass_exhausted tells which it was
         n, _, _ = added_inertia(V, scene)
         return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
     return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(

@@ -83,6 +83,7 @@ def requested_groups(rows):
     them; whether force or torque is.
     """
     quadratures = forces = False
+    # rows of quadratures are those of x and angle, and from OUT_WORK on; of forces those between
     for row in rows:
         quadratures = quadratures or OUT_X <= row < OUT_X + 2 or row >= OUT_WORK
         forces = forces or OUT_FORCE <= row < OUT_WORK
@@ -103,6 +104,7 @@ def write_column(column, speeds, code, forces, work):
     work: Workspace, of whose ``outputs`` rows 0, 1, 4, 5, 6 and 7 are written at ``column``.
     Returns nothing.
     """
+    # rows 2 and 3, x and angle, and those from OUT_WORK on are quadratures, written elsewhere
     out = work.outputs
     (V, omega, delta) = speeds
     (force, torque) = forces
@@ -154,7 +156,7 @@ def record_switch(code, step_state, work):
     """
     nodes = work.nodes
     switches = work.switches
-    n = int(nodes[N_RECORDED])
+    n = int(nodes[N_RECORDED])  # a count that is stored as a double, beside the other numbers
     if n < switches.shape[0]:
         switches[n, 0] = step_state.tau / work.scene.gamma
         switches[n, 1] = code
@@ -183,6 +185,7 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
     column = step_state.next_output
     tau = work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
+        # direction 1 of REGIME_AT_REST: forces in fixed directions
         load = evaluate_load(tau[column], step_state.segment, REGIME_AT_REST, work)
         write_column(column, (0.0, 0.0, 0.0), code, (load.force, load.torque), work)
         _write_totals(column, work)
@@ -373,12 +376,14 @@ def accept_step(end, v, step, regime, step_state, work):
     while column < tau.size and (tau[column] < end or is_last):
         v_output = min(dense_position(tau[column], step), 2.0)  # 2 may be passed by rounding.
         _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
+        # those that are not computed, as nothing drives, keep their totals
         for n in range(N_QUADRATURES if work.with_quadratures else 0):
             increase = _quadrature_at(n, v_output, step, work.nodes) if n < n_quadratures else 0.0
             write_quadrature(column, n, increase, work)
         column += 1
     if step_state.n_accepted < work.step_ends.size:
         work.step_ends[step_state.n_accepted] = end / work.scene.gamma
+    # up to v by the interpolant; along the whole step by Radau's rule, which is of higher order
     for n in range(n_quadratures):
         if v < 2.0:
             work.nodes[QUADRATURE_TOTALS + n] += _quadrature_at(n, v, step, work.nodes)

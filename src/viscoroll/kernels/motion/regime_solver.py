@@ -148,6 +148,7 @@ def _end_at_V_zero(step, remaining, state, regime, work):
     time = time_to_V_zero(step, state, regime, work)
     if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
         return step, False
+    # the second says ``time <= step.h`` of the length before
     return shorten_step(step, min(time, step.h)), time <= step.h
 
 
@@ -167,7 +168,7 @@ def _find_crossed_event(step, remaining, regime, work):
     no meaning then.
     """
     event, v = find_first_event(step, regime, work)
-    at_segment_end = step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
+    at_segment_end = step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END  # v = 2: the right end
     if event == V_ZERO and at_segment_end and work.drive.prescribed == PRESCRIBED_V:
         return NO_EVENT, v
     return event, v
@@ -350,13 +351,13 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
         event, v, step, error, dense_step = solve_trial_step(
             step, remaining, targets_V_zero, dense_step, regime, work
         )
-        h_tried = h
+        h_tried = h  # the length chosen before the end of the segment or an event cut it
         h = next_step_length(step, error, n_rejected, last_h, last_error)
         # An accepted step that the end of the segment has cut is no reason for a shorter next one.
         h = max(h, h_tried) if error <= 1.0 and step.h == remaining else h
         step_state = set_step_length(h, 1, step_state)
-        n_rejected += 1
-        if not error <= 1.0:
+        n_rejected += 1  # back to 0 below, where the step is accepted
+        if not error <= 1.0:  # or NaN
             if n_rejected <= _MAX_REJECTIONS and step_state.tau + h > step_state.tau:
                 continue
             if not error <= _ACCEPTED_AT_SHORTEST:

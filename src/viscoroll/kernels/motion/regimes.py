@@ -109,6 +109,7 @@ def brake_holds_omega(state, regime, step_state, work):
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     """
+    # equal torques hold: without a brake, limit = 0, a torque of exactly 0 does
     torque, limit = _torque_at_locked_wheel(state, regime, step_state, work)
     return abs(torque) <= limit
 
@@ -221,7 +222,7 @@ def impose_prescribed_speed(state, regime, step_state, work):
         # At fixed d omega is nearly proportional to V, unless it is far below V.
         factor = max(speed / omega, 0.0) if omega > _OMEGA_FOLLOWED * state.V else 1.0
         return State(state.V * factor, state.omega_or_d), regime
-    if full_slip and speed < 0.0:
+    if full_slip and speed < 0.0:  # V has to be >= 0 in the direction of the regime
         return State(-speed, -state.omega_or_d), reverse_direction(regime)
     return State(speed if full_slip else max(speed, 0.0), state.omega_or_d), regime
 
@@ -281,6 +282,7 @@ def apply_event(event, state, regime, step_state, work):
             return False, state, regime
         return True, State(0.0, -state.omega_or_d), reverse_direction(regime)
     if event == OMEGA_ZERO:
+        # exactly 0, which the located event is to rounding; in partial slip omega is no unknown
         still = State(state.V, 0.0) if full_slip else state
         if brake_holds_omega(still, regime, step_state, work):
             return True, still, change_brake(regime, regime.spin_sign, True)
@@ -309,6 +311,7 @@ def enter_segment(state, regime, step_state, work):
     """
     if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
+    # V would fall below 0 at once: in the opposite direction it grows, as a regime has V >= 0
     if (
         regime.full_slip
         and state.V == 0.0
@@ -318,6 +321,7 @@ def enter_segment(state, regime, step_state, work):
         regime = reverse_direction(regime)
     braked = has_brake(step_state.segment, work.drive)
     omega = current_rates(state, regime, step_state, work).omega
+    # a locked omega is 0 but for rounding in partial slip, where it follows from V and d
     if regime.locked or omega == 0.0:
         if braked and brake_holds_omega(state, regime, step_state, work):
             return state, change_brake(regime, regime.spin_sign, True)
@@ -356,7 +360,7 @@ def initial_regime(V, omega, step_state, work):
     limit = critical_creepage(V, sigma, work.scene) * V  # excess slip at which full slip begins
     state = State(V, omega)
     regime = Regime(full_slip=True, direction=direction, sigma=sigma, spin_sign=0.0, locked=False)
-    if V == 0.0:
+    if V == 0.0:  # the creepage is infinite
         return state, regime, False
     on_edge = abs(abs(slip) - limit) <= _START_ON_EDGE * max(V, abs(omega))
     stick_state = State(V, sigma if on_edge else reduced_slip(slip, limit, V, sigma, work.scene))

@@ -158,6 +158,7 @@ def required_forces(V, omega, rates, load, regime, j):
     """
     force, torque, _ = applied_forces(V, omega, load, regime)
     brake = -load.brake * regime.spin_sign
+    # each from its line of Eq. (22), with omega' = 0, or with the prescribed slope
     if regime.locked:
         brake = rates.Q + rates.M_cylinder - torque
     elif load.inverse_inertia == 0.0:
@@ -222,9 +223,9 @@ def partial_slip_rates(V, d, load, regime, scene):
     L = functions.L
     dL = functions.dL
     ddL = functions.ddL
-    stick = max(1.0 - sign * d, 0.0)
+    stick = max(1.0 - sign * d, 0.0)  # 1 - |d| on the branch of sigma; above 1 beyond d = 0
     w = stick * L
-    Q = sign * mu
+    Q = sign * mu  # that of w = 0, at the edge and beyond, with slopes of 0
     dQ_dV = 0.0
     dQ_dd = 0.0
     if w > 0.0:
@@ -275,7 +276,8 @@ def partial_slip_rates(V, d, load, regime, scene):
     inverse_product = inverse_mass * inverse_inertia
     dforce_dV = gains.force_V + gains.force_omega * domega_dV
     dtorque_dV = gains.torque_V + gains.torque_omega * domega_dV
-    # p' = inverse_inertia V' + inverse_mass omega', in which Q cancels.
+    # p' = inverse_inertia V' + inverse_mass omega', in which Q cancels: it is written without Q, so
+    # that its rounding does not enter.  A prescribed speed has inverse_product 0.
     p = inverse_inertia * V + inverse_mass * omega
     dp_dV = inverse_inertia + inverse_mass * domega_dV
     dp_dd = inverse_mass * domega_dd
@@ -307,6 +309,7 @@ def partial_slip_rates(V, d, load, regime, scene):
         dtorque_dd = dtorque_dd - 0.5 * n * dV_rate_dd
         p = p + inverse_product * n_integral
         dp_dV = dp_dV + inverse_product * n
+    # after the added mass, of which half acts on the cylinder
     omega_rate = inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
     # The equation of V d'; of a cover its divisor is d(L (d + c d^2))/dd in place of L.
     # Reciprocals are formed once: the processor takes longer for a division than for five products.
@@ -378,8 +381,8 @@ def full_slip_rates(V, omega, load, regime, scene):
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
-    on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)
-    # Full slip is the edge d = sigma of a table.
+    on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)  # Q is constant
+    # Full slip is the edge d = sigma of a table, which also knows what it is at V < 0.
     moments = table_state(
         V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table
     )

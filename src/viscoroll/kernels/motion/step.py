@@ -170,6 +170,8 @@ def _extrapolate(step, dense_step, regime, nodes):
     nodes: Workspace.nodes, with node 0 of ``step`` and the dense output; V and the second unknown
     are written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """
+    # The dense output has no constant: it is counted from v = 0 of ``dense_step``.  These are the
+    # constants with which it has the values of node 0 at v_start.
     v_start = dense_position(step.tau, dense_step)
     V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
     omega_or_d0 = nodes[ROW_OMEGA_OR_D] - evaluate_dense_output(
@@ -204,7 +206,9 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     )
     for i in range(1, N + 1):
         time = step.h * NODE_FRACTIONS[i]
-        # With x' = r + relaxation (x - x_0), x - x_0 = r (exp(relaxation time) - 1)/relaxation.
+        # With x' = r + relaxation (x - x_0), x - x_0 = r (exp(relaxation time) - 1)/relaxation; a
+        # growth is not extrapolated, and a relaxation of 0 not divided by: up to 1e-8 the quotient
+        # is ``time`` to 5e-9.
         effective_time = (
             np.expm1(relaxation * time) / relaxation if relaxation * time < -1e-8 else time
         )
@@ -237,6 +241,7 @@ def _predict_from_rest(step, regime, work):
         sticks, d = solve_d_at_departure(load, regime.spin_sign, work.scene)
         d = d if sticks else nodes[ROW_OMEGA_OR_D]
     rates = evaluate_rhs(State(0.0, d), load, regime, work.scene)
+    # at V = 0 and fixed d, p' = dp/dV V'
     V_rate_end = rates.V_rate if regime.full_slip else max(rates.p_rate / rates.dp_dV, 0.0)
     for i in range(1, N + 1):
         time = NODE_FRACTIONS[i] * step.h
@@ -310,6 +315,8 @@ def _evaluate_residuals(refactor, step, regime, work):
     values = by_value(work)
     nodes = work.nodes
     half_h = 0.5 * step.h
+    # D x: slopes of the interpolant; the value of node 0 is subtracted, which changes no slope but
+    # keeps the digits of small changes
     multiply_matrix(
         DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes
     )
@@ -322,6 +329,7 @@ def _evaluate_residuals(refactor, step, regime, work):
         slope = nodes[ROW_D_SLOPE + i]
         nodes[ROW_D_RESIDUAL + i] = half_h * rates.weighted_rate - rates.weight * slope
         if refactor:
+            # p is the unknown of the first system: derivatives in V become those in p
             dV_dp = 1.0 / rates.dp_dV
             coupling = dV_dp * (rates.dweight_dV * slope - half_h * rates.drate_dV)
             nodes[ROW_DV_DP + i] = dV_dp
@@ -397,6 +405,7 @@ def _newton_iteration(refactor, coupled, step, regime, work):
         multiply_matrix(d_matrix, ROW_D_RESIDUAL, 0.0, nodes, ROW_P_UPDATE, nodes)
         for i in range(1, ROW_LENGTH):
             nodes[ROW_P_RESIDUAL + i] += nodes[ROW_FEEDBACK + i] * nodes[ROW_P_UPDATE + i]
+    # dp, then the right side of the second system, which contains dp, then dd
     multiply_matrix(p_matrix, ROW_P_RESIDUAL, 0.0, nodes, ROW_P_UPDATE, nodes)
     for i in range(1, ROW_LENGTH):
         nodes[ROW_D_RESIDUAL + i] -= nodes[ROW_COUPLING + i] * nodes[ROW_P_UPDATE + i]
@@ -407,6 +416,7 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     change_V = 0.0
     for i in range(1, ROW_LENGTH):
         d_update = nodes[ROW_D_UPDATE + i]
+        # dV = (dp - p_d dd)/p_V of the module
         V_update = (nodes[ROW_P_UPDATE + i] - nodes[ROW_DP_DD + i] * d_update) * nodes[
             ROW_DV_DP + i
         ]
@@ -461,16 +471,19 @@ def solve_step(step, relaxation, dense_step, regime, work):
     for n in range(_MAX_ITERATIONS):
         change = _newton_iteration(refactor, coupled, step, regime, work)
         contraction = change / last_change
+        # the first ratio is not known; of a quadratic iteration it is small for a small update
         if n == 0:
             contraction = min(
                 _FIRST_CONTRACTION, _QUADRATIC_CONTRACTION * change + _REFACTOR_CONTRACTION
             )
-        if not (change < 1e6 and contraction < 2.0):  # Divergence, or a NaN.
+        # Divergence, or a NaN: an update of a million scales, or one twice as large as the last.
+        if not (change < 1e6 and contraction < 2.0):
             return False
         if change * contraction <= stop:
             fit_dense_output(ROW_V, ROW_DENSE_V, nodes)
             fit_dense_output(ROW_OMEGA_OR_D, ROW_DENSE_OMEGA_OR_D, nodes)
             return True
+        # new matrices only where updates are large and the old ones no longer reduce them well
         refactor = change > _REFACTOR_UPDATE and (n == 0 or contraction > _REFACTOR_CONTRACTION)
         last_change = change
     return False

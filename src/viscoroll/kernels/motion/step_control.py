@@ -122,6 +122,8 @@ def _rounding_scale_of_V(step, work):
     Returns a float above 0, dimensionless.
     """
     nodes = work.nodes
+    # rounding of V', |Q| = mu and the force, the first row of the drive, times half the length; the
+    # diagonal is dV'/dV times half the length, so that the sum takes the shorter of both times
     V_error = ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h
     V_error /= 1.0 + abs(nodes[ROW_P_DIAGONAL + N])
     return V_error / max(NEWTON_FRACTION * ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
@@ -168,6 +170,7 @@ def error_scales(step, regime, work):
     # An error of d is an error of omega, and at given p an error of V.
     for i in range(1, N + 1):
         V_change = max(V_change, abs(nodes[ROW_DP_DD + i] * nodes[ROW_DV_DP + i]))
+    # change of omega by a unit of d, about delta_star V = (mu/(2 kappa)) V, or of V at given p
     V_change = max(V_change, 0.5 * work.scene.mu / work.scene.kappa * largest_V) / largest_speed
     return largest_speed, 1.0 / max(_d_weight(nodes[ROW_OMEGA_OR_D + N]), V_change)
 
@@ -190,6 +193,7 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     row is NaN.
     """
     multiply_matrix(DIFFERENTIATION, row, nodes[row], nodes, slope_row, nodes)
+    # slopes at nodes 1 ... N are those of the equations; their extrapolation tests node 0
     defect = initial_slope
     for i in range(N):
         defect -= EXTRAPOLATION_TO_START[i] * nodes[slope_row + i + 1]
@@ -208,6 +212,7 @@ def _variation_of_p_rate(half, nodes):
     nodes: Workspace.nodes, with p' at nodes 1 ... N; one that is NaN is passed over unless it is at
     node 1.
     """
+    # the nodes at which the equations are met
     smallest = largest = nodes[ROW_P_RATE + 1]
     for i in range(2, N + 1):
         smallest = min(smallest, nodes[ROW_P_RATE + i])
@@ -234,7 +239,7 @@ def _relative_speed_at_first_output(step, work):
     """
     nodes = work.nodes
     output_time = last_output_tau(work)
-    for i in range(work.output_tau.size):
+    for i in range(work.output_tau.size):  # the first one after the left end
         if work.output_tau[i] > step.tau:
             output_time = work.output_tau[i]
             break
@@ -469,6 +474,7 @@ def first_step_length(stick_formed, step_state, regime, work):
         # whose sum is taken as at least 1.  While x grows from 0 to x_1 at the rate V x' = rate, in
         # the time x_1 V/rate, this changes d by 2 feedback alpha x_1^3/(3 rate): by about rtol at
         # x_1 = (rtol rate/(feedback alpha))^(1/3), d_scale.
+        # ``feedback`` is kappa (1/m + 1/J); alpha is the first number of the head of the rows.
         load = current_load(regime, step_state, work)
         feedback = scene.kappa * max(load.inverse_mass + load.inverse_inertia, 1.0)
         d_scale = (work.options.rtol * rate / (feedback * scene.law.rows[ALPHA])) ** (1.0 / 3.0)
@@ -503,7 +509,7 @@ def time_to_V_zero(step, state, regime, work):
     if step.undriven:
         return np.inf
     load = evaluate_load(step.tau, step.segment, regime, work)
-    driving = load.prescribed_V_rate + load.prescribed_omega_rate
+    driving = load.prescribed_V_rate + load.prescribed_omega_rate  # one of them at most is not 0
     if driving > 0.0 or (driving == 0.0 and load.force + load.torque >= 0.0):
         return np.inf
     return -state.V / V_rate

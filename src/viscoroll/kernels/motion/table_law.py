@@ -141,8 +141,12 @@ def width_at(u, sigma, mu, rows, table):
 def table_state(V, d, sigma, kappa, mu, rows, table):
     """Return the :class:`Loads` of a state by the table, or ``rows`` of a law without one.
 
-    V, d, sigma, kappa, mu, table: as of :func:`_loads`; ``table`` may be None.
-    rows: :class:`Loads` that the rows of the law give.
+    V: float, speed of the axis, of either sign.
+    d: float, second unknown of the module, of either sign; full slip where sigma d >= 1.
+    sigma: float, side of D_0, 1.0 or -1.0.
+    kappa, mu: floats, slenderness and coefficient of friction, > 0.
+    rows: :class:`Loads` that the rows of the law give, the result without a table.
+    table: vector of :mod:`.coupled_splines`, or None.
     """
     if table is None:
         return rows
@@ -167,6 +171,8 @@ def _loads(V, d, sigma, kappa, mu, table):
         sign = -1.0
         sigma = -sigma
     u = kappa * abs(V)
+    # Partial slip at V < 0, of trial states of Newton's iteration, is read at |V| without a change
+    # of sign, so that only slopes over V change theirs.
     du_dV = kappa if V >= 0.0 else -kappa
     speed = locate_speed(u, table)
     cell = cell_at(speed, locate_creep(w, sigma, table), table)
@@ -214,6 +220,7 @@ def _pull(d, kappa, mu, table):
     table: vector of :mod:`.coupled_splines`.
     Returns four floats, dimensionless.
     """
+    # sigma is the sign of d; at d = 0 both sides have the same loads, but not the same derivatives
     found = _loads(0.0, d, np.copysign(1.0, d), kappa, mu, table)
     return (
         found.Q - found.half_space,
@@ -255,7 +262,9 @@ def slow_law_of_table(sigma, kappa, mu, rows, table):
         return rows
     at = _loads(0.0, 0.0, sigma, kappa, mu, table)
     width = width_at(0.0, sigma, mu, Width(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), table)
-    # d = (Q - Q_dV V)/Q_dd; 2 kappa delta = D_0 + mu L d, where D_0 is linear in u = kappa V.
+    # d = (Q - Q_dV V)/Q_dd; 2 kappa delta = D_0 + mu L d, where D_0 is linear in u = kappa V.  So
+    # M = M_dV V + M_dd d = (M_dV - Q_dV M_dd/Q_dd) V + (M_dd/Q_dd) Q, and the reaction is minus the
+    # factor of Q.
     half_space = at.half_space_dd / at.Q_dd
     cylinder = at.cylinder_dd / at.Q_dd
     creep = 0.5 * mu * width.L / (kappa * at.Q_dd)
@@ -317,7 +326,9 @@ def balance_of_table(load, kappa, mu, rows, table):
                 high = d
         d = 0.5 * (low + high)
         if abs(d) >= 1.0 - _EDGE:  # The bisection ran to an end: no d balances the force.
+            # moments may leave a force below mu unbalanced too: below 0 in any case
             return min(mu - abs(load.force), -_EDGE)
+        # torque that friction takes at this d in rolling in this direction
         on_spin = _pull(d, kappa, mu, table)[1]
         margin = min(margin, on_spin - direction * load.torque)
     if abs(margin) < _ROUNDING * mu:

@@ -90,13 +90,15 @@ def write_private(path: Path, content: bytes) -> None:
     file then keeps its content, and no temporary file is left.
     """
     make_private_folder(path.parent)
+    # in the same folder, so that os.replace is one step that nobody sees half done
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
     try:
+        # made with its rights before anything is in it, and never one that others have put there
         temporary.touch(mode=0o644, exist_ok=False)
         temporary.write_bytes(content)
         os.replace(temporary, path)
     finally:
-        with suppress(OSError):
+        with suppress(OSError):  # it does not exist any more, unless a step before failed
             temporary.unlink()
 
 
@@ -111,9 +113,10 @@ def make_private_folder(folder: Path) -> None:
     made.
     """
     refuse_writable_by_others(folder)
+    # from the top down, each with this mode, which ``parents=True`` would not give to all
     for parent in reversed((folder, *folder.parents)):
         if not parent.exists():
-            parent.mkdir(mode=0o755, exist_ok=True)
+            parent.mkdir(mode=0o755, exist_ok=True)  # another process may have made it meanwhile
 
 
 def refuse_writable_by_others(path: Path) -> None:
@@ -135,6 +138,7 @@ def refuse_writable_by_others(path: Path) -> None:
         return
     # the owner of "/" may do anything; in a container that is not always 0
     trusted = {os.geteuid(), 0, Path("/").stat().st_uid}
+    # the path as written, whose links others might replace, and the one it leads to, each part once
     plain = path.absolute()
     real = Path(os.path.realpath(path))
     for part in dict.fromkeys((plain, *plain.parents, real, *real.parents)):
@@ -143,6 +147,7 @@ def refuse_writable_by_others(path: Path) -> None:
         except OSError:  # it does not exist yet
             continue
         group = status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid)
+        # S_ISVTX: a sticky folder, such as /tmp
         shared = (group or status.st_mode & stat.S_IWOTH) and not status.st_mode & stat.S_ISVTX
         if shared or status.st_uid not in trusted:
             problem = "others may write to it" if shared else "it belongs to another user"
@@ -161,6 +166,7 @@ def _is_private(group: int) -> bool:
     the name of this user and lists no member but this user; else False, also if the group or this
     user has no entry in the system's lists.
     """
+    # modules that Windows does not have, where nobody calls this
     import grp
     import pwd
 

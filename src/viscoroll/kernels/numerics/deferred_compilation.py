@@ -70,9 +70,8 @@ def _memoized_types(typing, target):
             isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args
         ):
             return plain(function, args, kws)
-        if not all(
-            isinstance(kind, types.Literal) for kind in args
-        ):  # numba resolves again for every literal integer
+        # numba resolves again for every literal integer
+        if not all(isinstance(kind, types.Literal) for kind in args):
             args = tuple(map(types.unliteral, args))
         if (function, args) not in resolved:
             resolved[function, args] = plain(function, args, kws)
@@ -86,6 +85,7 @@ def _memoized_types(typing, target):
     try:
         yield
     finally:
+        # the attributes of the instances: the methods of their classes show again
         del typing.resolve_function_type, typing.resolve_getattr, target.get_abi_sizeof
         base._has_loc = has_location
 
@@ -142,7 +142,8 @@ class EntryPipeline:
             with _memoized_types(*self._context[:2]):
                 return _pipelines()[1](*self._context).compile_extra(function)
         except Exception as error:
-            reason = error
+            reason = error  # ``error`` ends with the except clause
+        # read by :func:`defer` too: called kernels are then compiled in numba's way
         _deferring = False
         try:
             compiled = Compiler(*self._context).compile_extra(function)
@@ -242,6 +243,7 @@ def _pipelines():
 
             module : the module, which belongs to the library from then on.  Returns nothing.
             """
+            # empty: no function yet
             if next(iter(self._final_module.functions), None) is None:
                 self._optimize_functions(module)
                 self._final_module = module
@@ -273,12 +275,11 @@ def _pipelines():
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
             _link(self, module)
-            for (
-                function
-            ) in module.functions:  # nobody else calls the parts: LLVM leaves out what is not used
+            # nobody else calls the parts: LLVM leaves out what is not used
+            for function in module.functions:
                 if not function.is_declaration and function.name not in own:
                     function.linkage = "internal"
-            self._linking_libraries = []
+            self._linking_libraries = []  # all are linked already; numba would link them again
             super().finalize()
 
         def _optimize_final_module(self):
@@ -295,6 +296,7 @@ def _pipelines():
             Names of numba's functions begin with _ZN; others, of the C library, may be missing
             here.  Returns nothing.
             """
+            # a declaration that is left has no body in any of the linked libraries
             for function in self._final_module.functions:
                 if function.is_declaration and function.name.startswith("_ZN"):
                     raise RuntimeError(
@@ -320,7 +322,7 @@ def _link(library, module):
     waiting = list(library._linking_libraries)
     while waiting:
         library = waiting.pop(0)
-        if library not in linked:
+        if library not in linked:  # a function that is linked twice would be defined twice
             linked.append(library)
             # the module without what a part links by itself
             module.link_in(JITCodeLibrary._get_module_for_linking(library), preserve=True)
@@ -351,6 +353,7 @@ def _pipeline(library_class: type):
         _name = f"lowering into {library_class.__name__}"
 
         def run_pass(self, state):
+            # numba makes a library where there is none yet, and enables the same for its cache
             state.library = library_class(state.targetctx.codegen(), state.func_id.func_qualname)
             state.library.enable_object_caching()
             return super().run_pass(state)
@@ -362,6 +365,7 @@ def _pipeline(library_class: type):
         Other kinds of numba's flags are never equal to them.
         """
 
+        # ``_values``, private to numba: the flags that are set, by name
         def __hash__(self):
             return hash(frozenset(self._values))
 
@@ -387,6 +391,7 @@ def _pipeline(library_class: type):
             """Return a list of one pass manager: numba's, with :class:`Lowering` and without some
             passes.
             """
+            # passes are named by their classes; ``why`` is numba's description of each
             passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
             steps = [(step, why) for step, why in passes.passes if step.__name__ not in _NOT_NEEDED]
             passes.passes = [

@@ -138,7 +138,8 @@ def radau(n: int, side: int) -> list[Decimal]:
     side : the end that is a node, int, -1 or 1.
     Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
-    # P_(n-1) + P_n of Legendre vanishes at -1 and at the other nodes of the rule with that end.
+    # P_(n-1) + P_n of Legendre vanishes at -1 and at the other nodes of the rule with that end; no
+    # start is near -1 itself.  The nodes of the rule with the end 1 are those of the mirror image.
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
     return sorted([Decimal(side), *(-side * x for x in inner)])
 
@@ -199,6 +200,8 @@ def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
     matrix = np.zeros((n, n))
     matrix[0, 0] = 1.0
     matrix[1, :2] = [-shift, scale]
+    # T_m = 2 (scale t - shift) T_(m-1) - T_(m-2); t moves coefficients up by one power.  0.0 - 2.0
+    # shift is 0.0 for a shift of 0, where -2.0 shift would be -0.0.
     for m in range(2, n):
         matrix[m] = (0.0 - 2.0 * shift) * matrix[m - 1] - matrix[m - 2]
         matrix[m, 1:] += 2.0 * scale * matrix[m - 1, :-1]
@@ -232,6 +235,7 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
     angles, rounded to 36 digits after the point.  It is not checked that the iteration has
     converged.
     """
+    # a cosine of this machine serves as a start alone: its last digits have no effect on the result
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)
     with localcontext(Context(prec=_DIGITS_OF_SEARCH)):

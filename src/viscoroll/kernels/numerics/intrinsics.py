@@ -59,9 +59,11 @@ def make_intrinsic(lower: Callable, returned, *kinds):
     Returns numba's intrinsic, which is called in kernels with these arguments, by position.
     """
 
+    # numba passes the types of the arguments: a kind given replaces that of the argument
     def give_signature(context, *arguments):
         return returned(*(kind or own for kind, own in zip(kinds, arguments, strict=True))), lower
 
+    # the signature that numba reads has a name for each argument, not ``*arguments``
     names = ["context", *(f"given_{n}" for n in range(len(kinds)))]
     give_signature.__signature__ = Signature(
         [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in names]
@@ -192,6 +194,7 @@ def septic(t, c):
     Returns a float, NaN if ``t`` or a coefficient is NaN.
     """
     t2 = t * t
+    # pairs, then pairs of pairs: three levels in place of seven steps of Horner's scheme
     low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))
     high = fma(t2, fma(t, c[7], c[6]), fma(t, c[5], c[4]))
     return fma(t2 * t2, high, low)
@@ -260,7 +263,7 @@ def _load(context, builder, kind, at):
     """
     if not isinstance(kind, (types.NamedTuple, types.Array)):
         return builder.load(at)
-    whole = context.get_constant_undef(kind)
+    whole = context.get_constant_undef(kind)  # every field of which is set below
     for n in range(len(whole.type.elements)):
         field = cgutils.gep_inbounds(builder, at, 0, n)
         one = (
@@ -367,7 +370,7 @@ def bin_offset(x, bits):
     """
     word = float_to_bits(x)
     # The centre has the leading bits of the mantissa, and then a half bin; both numbers get the
-    # exponent of 1.
+    # exponent of 1.  2 half_bin - 1 masks the bits of the mantissa behind the leading ones.
     half_bin = 1 << (51 - bits)
     centre = bits_to_float((word & (_MANTISSA - (2 * half_bin - 1))) | (_ONE + half_bin))
     return bits_to_float((word & _MANTISSA) | _ONE) - centre

@@ -69,6 +69,8 @@ def sources_digest() -> str:
     Returns a str of 16 hexadecimal digits.  Raises OSError if one of the files cannot be read.
     """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
+    # sorted, as the order of a folder is that of the file system; names, so that a file that moves
+    # counts as another one
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
         digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
@@ -125,6 +127,7 @@ class DiskCache:
         try:
             yield
         finally:
+            # only the process that holds the lock removes its file, and before it lets go
             if lock.is_locked:
                 Path(lock.lock_file).unlink(missing_ok=True)
             lock.release()
@@ -139,7 +142,7 @@ class DiskCache:
         cannot be read, or may have been written by others; None with a RuntimeWarning
         (:func:`warn_once`) if its checksum is wrong or numba cannot rebuild the code from it.
         """
-        target.refresh()
+        target.refresh()  # numba's own cache does so before it rebuilds code
         try:
             stored = read_private(self._path(signature, target.codegen()))
         except OSError:  # it does not exist, cannot be read or is not ours alone: saving will warn
@@ -164,6 +167,7 @@ class DiskCache:
         """
         if compiled.library.has_dynamic_globals:
             return
+        # level 1, the fastest; the checksum of the compressed code is in front of it
         content = zlib.compress(dumps(compiled._reduce()), 1)
         try:
             write_private(
@@ -190,6 +194,8 @@ class DiskCache:
         """
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"
+        # None for a setting that this version of numba does not have; the line below tells
+        # functions of one name apart
         settings = [str(getattr(numba.config, setting, None)) for setting in _SETTINGS]
         key = (
             name,
@@ -240,6 +246,7 @@ def kernel(
         return lambda f: kernel(f, inline=inline, allocates=allocates)
     options = {"error_model": "numpy", "nogil": True, "forceinline": inline, "_nrt": allocates}
     dispatcher = numba.njit(function, pipeline_class=EntryPipeline, **options)
+    # in place of ``cache=True``, whose cache is numba's own (the module says why not)
     dispatcher._cache = DiskCache(function)
     defer(dispatcher, options)
     _compile_exclusively(dispatcher)

@@ -103,6 +103,7 @@ def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
         if isinstance(kind, types.CPointer)
         else context.make_array(kind)(context, builder, array).data
     )
+    # ``start`` counts numbers; from there on the pointer counts vectors
     first = builder.bitcast(builder.gep(data, [start]), vector.as_pointer())
     return [builder.gep(first, [_INT(n)]) for n in range(count)]
 
@@ -133,6 +134,7 @@ def _define_operator(function, name):
     Returns None; kernels may use the operator from then on.
     """
 
+    # a vector, if one of both is one and the other a vector or a double; None: not this operator's
     def give_type(context):
         return lambda a, b: FOUR if FOUR in (a, b) and {a, b} <= {FOUR, types.float64} else None
 
@@ -178,6 +180,7 @@ def _fma4(context, builder, signature, arguments):
     context, builder, signature, arguments : of numba's lowering of (a, b, c), vectors or tuples.
     Returns a value of LLVM, a vector or a tuple of vectors.
     """
+    # three columns of as many vectors as the result has
     kind = signature.return_type
     columns = (
         _vectors_of(builder, own, x, getattr(kind, "count", 1))
@@ -309,6 +312,7 @@ def _make_sums(count: int, orders: int):
                 ]
                 power = builder.fmul(power, power)
             sums.append(level[0])
+            # the derivative: coefficient k times k, moved down by one power
             terms = [builder.fmul(_constant([k] * LANES), term) for k, term in enumerate(terms)][1:]
         return context.make_tuple(builder, signature.return_type, sums)
 
@@ -330,6 +334,8 @@ def _lower_secants(context, builder, signature, arguments):
     """
     terms = load_vectors(context, builder, signature, arguments, _ONE)
     sums = []
+    # Horner's scheme of p in x, ``value``; the partial sums are the coefficients of (p(x) -
+    # p(z))/(x - z) as a polynomial in z, ``total``, by the same scheme (synthetic division).
     x, z = (broadcast_value(builder, power) for power in arguments[2:])
     for _ in range(2):
         value = total = terms[-1]
@@ -455,7 +461,9 @@ def _join_secant(sums, secants, t, s):
     """
     square = t * t
     s_square = s * s
-    # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
+    # t^n a - s^n b = s^n (a - b) + a (t^n - s^n), divided by t - s: a - b is its secant times t^4 -
+    # s^4 = (t - s) (t + s) (t^2 + s^2), and t^2 - s^2 and t^3 - s^3 have the factors t + s and t^2
+    # + t s + s^2.
     _, first, second, third = unpack(sums)
     first = fma(fma(t, s, square + s_square), third, fma(t + s, second, first))
     return _join(sums, t, square), (t + s) * (square + s_square) * _join(
@@ -480,6 +488,7 @@ def evaluate_secants(table, start, t, s):
     """
     square = t * t
     s_square = s * s
+    # four polynomials in t^4, of p and of p', with their secants between t^4 and s^4
     sums, secants, slope_sums, slope_secants = _one_secants(
         table, start, square * square, s_square * s_square
     )
@@ -539,6 +548,8 @@ def divided_differences(count, scratch):
     for order in range(POINT_COUNT):
         # From the last four points down to those that contain number ``order``: difference k of an
         # order is (d_k - d_(k - 1))/(x_k - x_(k - order)) with those of the order before.
+        # Order 0 is the values.  A vector that reaches below number ``order`` overwrites numbers
+        # that are not read again; below point 0 lie the four numbers that are kept free.
         first = POINT_COUNT - LANES
         while order > 0 and first > order - LANES:
             x = ARGUMENTS + first
@@ -552,6 +563,7 @@ def divided_differences(count, scratch):
                     (upper - shift_in(load(scratch, start - LANES), upper)) * inverse,
                 )
             first -= LANES
+        # the leading difference, that of the points 0 to ``order``, to where it is kept
         for which in range(count):
             start = VALUES + FUNCTION_STRIDE * which + order
             scratch[start + _BLOCK] = scratch[start]
@@ -568,9 +580,11 @@ def evaluate_at_nodes(nodes, which, scratch):
         function; 24 values are written from NODE_VALUES on, in the order of ``nodes``, over those
         of another function.  Returns nothing.
     """
-    start = VALUES + FUNCTION_STRIDE * which + _BLOCK
+    start = VALUES + FUNCTION_STRIDE * which + _BLOCK  # of the divided differences
     x = load_row(nodes, 0)
     last = broadcast(scratch[start + POINT_COUNT - 1])
+    # Horner's scheme of Newton's form, at 24 nodes at once: six vectors; fma4 takes tuples, so that
+    # x - x_n is written as x 1 + (-x_n)
     value = last, last, last, last, last, last
     for n in range(POINT_COUNT - 2, -1, -1):
         distance = fma4(x, broadcast(1.0), broadcast(-scratch[ARGUMENTS + n]))
@@ -590,6 +604,7 @@ def sum_of_rows(matrix, first, terms, factors, to, numbers):
     numbers : contiguous vector with the factors; the sum, 24 numbers, is written after all factors
         have been read, so that the two may overlap; zeros if ``terms`` is 0.  Returns nothing.
     """
+    # six vectors, the 24 numbers of a row, which stay in registers until all rows are added
     zero = broadcast(0.0)
     total = zero, zero, zero, zero, zero, zero
     for n in range(terms):
@@ -628,4 +643,4 @@ def to_powers(slow, limit, scratch):
             if k == TERMS - 1 or abs(scratch[_COEFFICIENTS + k]) < _ROUNDING * largest:
                 scratch[_COEFFICIENTS + k] = 0.0
     sum_of_rows(_SLOW_POWERS if slow else _POWERS, 0, TERMS, _COEFFICIENTS, NODE_VALUES, scratch)
-    scratch[NODE_VALUES] += limit
+    scratch[NODE_VALUES] += limit  # the reference value back to the constant
