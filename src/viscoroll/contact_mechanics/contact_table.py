@@ -66,6 +66,8 @@ SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 #: ``slopes=True``.
 SLOPES_OF_COVERS = ("dM_ddelta", "dM_domega", "dM_half_space_domega", "dM_cylinder_domega")
 _ALL_SLOPES = SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS
+#: Slopes that ``table_loop`` writes only beside a slope of Q or of M of both bodies.
+_BESIDE_OTHERS = frozenset([*SLOPES_OF_BODIES, "dM_half_space_domega", "dM_cylinder_domega"])
 #: Added mass of slow speed changes.
 UNSTEADY = "N"
 #: Friction reserve 1 - |Q|/mu.
@@ -370,10 +372,13 @@ def evaluate_law(
     """
     count = math.prod(shape)
     loop, states = _kernel(direct)
-    rows = kernel_rows(names)
-    out = np.empty((len(names), count))
     record: Any = material.record if isinstance(material, LawTable) else None
     coupled = record is not None and record.table is not None
+    asked = len(names)
+    if coupled and not _BESIDE_OTHERS.isdisjoint(names) and "dM_dV" not in names:
+        names = (*names, "dM_dV")
+    rows = kernel_rows(names)
+    out = np.empty((len(names), count))
 
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
         """Evaluate the states ``start`` to ``stop`` - 1 and write them into these columns of
@@ -428,7 +433,7 @@ def evaluate_law(
         numbers = broadcast_rows(arrays, shape)
         numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)
         evaluate_block(0, count, *numbers)
-        return out
+        return out[:asked]
     readers = [block_reader(np.asarray(array), shape) for array in arrays]
     block = _BLOCK_OF_MATERIALS if isinstance(material, Prony | Bodies) else _BLOCK
     run_blocks(
@@ -436,7 +441,7 @@ def evaluate_law(
         count,
         block,
     )
-    return out
+    return out[:asked]
 
 
 @lru_cache(maxsize=2)
