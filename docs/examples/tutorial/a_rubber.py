@@ -78,6 +78,6 @@ axes.set(
 axes.legend(frameon=False)
 
 # %%
-# Each small maximum belongs to one relaxation time of the series.  The real rubber relaxes at all
-# times, so its curve is smooth.  Here the rubber is a half-space.  For a rubber layer of finite
-# thickness give ``fit.material(thickness=...)``: :doc:`/howto/covers`.
+# Each small maximum belongs to one relaxation time of the series.  The real rubber has very many
+# relaxation times, close together, so its curve is smooth.  Here the rubber is a half-space.  For a
+# rubber layer of finite thickness give ``fit.material(thickness=...)``: :doc:`/howto/covers`.

@@ -54,5 +54,5 @@ axes.legend(frameon=False, fontsize="small")
 
 # %%
 # The theory assumes that shear does not change the pressure.  This is so if Dundurs' constant is 0.
-# For rubber on steel it is close to 0:
+# For rubber on steel it is close to 0, since rubber is nearly incompressible:
 print(roller.validity(1.0).bodies.sentence)
