@@ -2,9 +2,9 @@
 Rolling resistance over speed
 =============================
 
-At low speed the material relaxes completely within the contact, at high speed it hardly relaxes.
-In both limits little energy is lost.  Rolling resistance has its maximum where the transit time
-of the contact is about the relaxation time.
+At low speed the material relaxes completely while it passes through the contact, at high speed it
+hardly relaxes.  In both cases little energy is lost.  Rolling resistance has its maximum at the
+speed at which a point passes through the contact in about the relaxation time.
 """
 
 import matplotlib.pyplot as plt
