@@ -121,10 +121,12 @@ def measured(old, new):
     return vr.identify(**read_measurements(experiments.measurements(Path(), old, new)), starts=1)
 
 
-def data(text, kind="resistance"):
-    """The first data of a file of measurements, whose columns have the names of its own kind."""
+def data(text, kind="resistance", more=""):
+    """The first data of a file of measurements, whose columns have the names of its own kind, or
+    those of ``more`` lines.
+    """
     file(text, "drum.csv")
-    plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "")
+    plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', more)
     return read_measurements(file(plain.replace("resistance", kind)))["data"][0]
 
 

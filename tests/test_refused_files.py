@@ -137,6 +137,9 @@ REFUSED = [
             "given.nc | unit of Q = N m2 | N/m": lambda: vr.load_law(
                 netcdf(OTHER_GRID.assign(Q=OTHER_GRID.Q.assign_attrs(units="N m2")))
             ),
+            "unit of V = missing | m/s, or 1 of a grid without dimension": lambda: vr.load_law(
+                netcdf(OTHER_GRID.assign_coords(V=OTHER_GRID.V.drop_attrs()))
+            ),
             "given.nc: is not a grid of a law: V must increase strictly, over at least two "
             "nodes": lambda: vr.load_law(netcdf(OTHER_GRID.isel(V=[0]))),
             "given.nc: is not a material file: it is a grid, for vr.load_law and "
@@ -219,6 +222,12 @@ REFUSED = [
                 '"lognrom"',
             ),
             "line 4 | lognorm also needs s": ("a preset", "s = 0.3, ", ""),
+            "an integer of more than 64 bits: write it with a decimal point": (
+                "a preset",
+                "j = 0.4",
+                f"j = {-(2**63) - 1}",
+            ),
+            "has 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
             "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
             "line 4 | : must have low < high and a probability above 0": (
                 "a preset",

@@ -37,10 +37,11 @@ def _read_modules(file: str) -> dict[str, str]:
 
 
 def _open_room(room: str, file: str) -> Callable[[str], Any]:
-    """Return the ``__getattr__`` of a room: it imports a name of the room at its first use, since
-    Python calls it for a name that it does not find, and keeps it there.
+    """Return the ``__getattr__`` of a room, a subpackage whose names are imported at their first
+    use: Python calls it for a name that it does not find; it imports the name and keeps it there.
 
-    room, file: name and path of the room's ``__init__.py``.
+    room: full name of the subpackage, as "viscoroll.core", its ``__name__``.
+    file: path of its ``__init__.py``, beside which ``__init__.pyi`` lists the names.
     The function raises AttributeError for a name that ``__init__.pyi`` does not list.
     """
     modules = _read_modules(file)

@@ -336,6 +336,9 @@ def test_steps_that_are_none_are_refused_in_words(built, version):
             assert np.array_equal(roller.get("v", "omega", "x"), at)
         roller.step(0.05, 0.0)
         assert np.array_equal(roller.get("v", "omega", "x"), at)
+        roller.set(rtol=1e-300)
+        roller.refuses("rtol = 1e-300: must be in [1e-12, 0.01]", roller.step, 0.05, 0.05)
+        roller.set(rtol=1e-8)
         roller.step(0.05 + 1e-12, 0.05)  # times of tools are sums
 
 
@@ -439,9 +442,14 @@ def test_an_announced_end_is_kept(built, version):
         one.step(0.0, 0.1)
         one.step(0.1, 0.1 + 1e-12)  # times of tools are sums
         then = one.get("v", "x")
-        one.refuses("end of the step = 0.4: must be at most stopTime = 0.3", one.step, 0.2, 0.2)
+        past = "end of the step = 0.4: must be at most stopTime = 0.3"
+        one.refuses(past, one.step, 0.2, 0.2)
         assert np.array_equal(one.get("v", "x"), then)
+        kept = one.fmu.serializeFMUState(one.fmu.getFMUState())
         one.step(0.2, 0.1)
+        one.fmu.reset()
+        one.fmu.setFMUState(one.fmu.deserializeFMUState(kept))
+        one.refuses(past, one.step, 0.2, 0.2)
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -449,6 +457,8 @@ def test_a_state_has_its_mode_and_initialization_has_the_speeds_of_the_start(bui
     with opened(
         built("alike", "Roller", version), "CoSimulation", ready=False, v0=1.0, omega0=4.0
     ) as one:
+        if not one.two:  # version 3 reads in every mode
+            assert close(one.get("v", "omega"), [1.0, 4.0], tol.FMU_ROUNDED)
         one.begin()
         assert close(one.get("v", "omega"), [1.0, 4.0], tol.FMU_ROUNDED)
         one.fmu.exitInitializationMode()
@@ -502,12 +512,67 @@ def test_what_is_out_of_range_is_refused_in_words(built, version):
         for given, said in (
             ({"R": -1.0}, "R = -1: must be > 0"),
             ({"v": np.nan}, "v = nan: must be finite"),
+            ({"v": 1e308, "load": 2e3}, "must be finite: an input or a parameter is too large"),
         ):
             element.set(**given)
             element.refuses(said, element.get, "force")
             element.set(R=0.1, v=1.0)
         element.refuses("that of an input or a parameter", element.set, force=1.0)
         element.get("force")
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_counts_and_times_that_cannot_be_are_refused(built, version):
+    """Counts other than that of the states read and wrote other variables; any time was taken."""
+    with opened(built("alike", "Roller", version), ready=False, v0=1.0) as one:
+        start = one.fmu.setupExperiment if one.two else one.fmu.enterInitializationMode
+        for t in (np.nan, np.inf):
+            one.refuses("must be finite", start, startTime=t)
+        one.begin()
+        one.fmu.exitInitializationMode()
+        one.fmu.enterContinuousTimeMode()
+        at = one.get("v", "slip", "x", "der_v")
+        rates = "Derivatives" if one.two else "ContinuousStateDerivatives"
+        for name in (
+            "SetContinuousStates",
+            "GetContinuousStates",
+            f"Get{rates}",
+            "GetNominalsOfContinuousStates",
+        ):
+            call = getattr(one.fmu.dll, f"fmi{version}{name}")
+            for n in (2, 4):
+                assert call(ctypes.c_void_p(one.fmu.component), *_pointer(np.ones(n)))
+                assert f"number of values = {n}: must be 3" in one.said[-1]
+        one.refuses("time = nan: must be finite", one.fmu.setTime, np.nan)
+        assert np.array_equal(one.get("v", "slip", "x", "der_v"), at)
+
+
+@pytest.mark.parametrize(
+    ("version", "model", "change", "said"),
+    [
+        (2, "Roller", {"guid": "{0}"}, "token: must be {"),
+        (3, "Roller", {"guid": "{0}"}, "token: must be {"),
+        (2, "ContactElement", {}, "must be model exchange"),
+        (3, "ContactElement", {}, "must be model exchange"),
+        (3, "Roller", {"event_mode_used": True}, "eventModeUsed: must be false"),
+    ],
+)
+def test_an_instance_that_is_none_says_why(built, version, model, change, said):
+    """Another token, an interface that is not there, events in co-simulation."""
+    path = built("alike", model, version)
+    about = fmpy.read_model_description(path)
+    about.guid = change.get("guid", about.guid)
+    about.coSimulation = about.coSimulation or about.modelExchange
+    lines = []
+    with pytest.raises(Exception, match="nstantiate"):
+        fmpy.instantiate_fmu(
+            fmpy.extract(path),
+            about,
+            "CoSimulation",
+            logger=lambda *given: lines.append(str(given)),
+            event_mode_used="event_mode_used" in change,
+        )
+    assert said in lines[-1]
 
 
 @pytest.mark.filterwarnings("always::viscoroll.ModelWarning")  # printed by the program

@@ -47,6 +47,21 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.parametrize(
+    "heading",
+    ["V x10^3 [m/s]", "V*1000 [m/s]", "1000 V [m/s]", "V / 1e3 m/s", "V in 1000 m/s", "log3(V)"],
+)
+def test_a_factor_in_a_heading_is_no_unit(here, heading):
+    """Which side it multiplies cannot be told; the advice, followed, gives the unit."""
+    text = f"{heading};M [N m/m]\n72;0.2\n720;0.3\n"
+    more = f'columns = {{ V = "{heading}" }}\n'
+    with pytest.raises(vr.FileError, match=r"V is in .*: give units = \{ V = \.\.\. \}"):
+        data(text, more=more)
+    found = data(text, more=more + 'units = { V = "mm/s" }\n')
+    if not heading.startswith("log"):
+        assert close(found.V, [0.072, 0.72], tol.DMA_DIGITS)
+
+
 def test_columns_that_are_left_aside_are_told(here):
     with pytest.warns(vr.ModelWarning, match=r"drum.csv: unused columns: 'T \[°C\]'"):
         data("V [m/s],M [N m/m],T [°C]\n0.1,0.2,20\n0.2,0.3,20\n")

@@ -57,6 +57,11 @@ CASES = {
     "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
     "a negative loss modulus": (RIGHT + "200;9;-2\n", "remove the row", without("200;9")),
     "thousands": (THOUSANDS, "write only decimal marks", change(",", "")),
+    "a footer of means": (
+        RIGHT + "Mean;9;2\n\nStd;3;1\n",
+        "'Mean' is not a number: remove its row",
+        without("Mean|Std"),
+    ),
     "words among the rows": (
         RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n",
         "remove it",
@@ -128,12 +133,15 @@ CASES = {
         give(units={"storage": "MPa", "loss": "MPa"}),
         {"storage": "S1 [N/mm]", "loss": "S2 [N/mm]"},
     ),
-    "a power of ten, named": (
-        "f [Hz];E' x10^6 [Pa];E'' x10^6 [Pa]\n<f; S/1e6; L/1e6>\n",
-        "is not a unit of storage: give units=",
-        give(units={"storage": "MPa", "loss": "MPa"}),
-        {"storage": "E' x10^6 [Pa]", "loss": "E'' x10^6 [Pa]"},
-    ),
+    **{
+        f"a factor, named: {factor}": (
+            f"f [Hz];E' {factor};E'' {factor}\n<f; S/1e6; L/1e6>\n",
+            "is not a unit of storage: give units=",
+            give(units={"storage": "MPa", "loss": "MPa"}),
+            {"storage": f"E' {factor}", "loss": f"E'' {factor}"},
+        )
+        for factor in ("x10^6 [Pa]", "x1000 [kPa]", "/1000 [kPa]", "in 1000 kPa", "millions Pa")
+    },
     "a modulus without a unit": (
         "f [Hz];E' [MPa];E''\n<f; S/1e6; L/1e6>\n",
         "give units={'loss'",

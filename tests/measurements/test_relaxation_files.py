@@ -56,7 +56,7 @@ def test_relaxation_is_read(text, tmp_path):
     [
         (
             "Time [s];Force [N]\n1;2\n2;1\n",
-            ["no column was found for time, or none for the modulus", "'Force [N]'"],
+            ["no column was found for time, or none for relaxation modulus", "'Force [N]'"],
         ),
         (
             "Time [Hz];E(t) [MPa]\n1;2\n2;1\n",

@@ -104,6 +104,8 @@ def test_moments_and_quantiles(size):
     assert (one.low, one.high, one.count) == (kept.min(), kept.max(), kept.size)
     assert abs(one.mean - kept.mean()) <= tol.MOMENT
     assert abs(one.spread / one.count - kept.var()) <= tol.MOMENT
+    wide = Histogram.of(np.array([1e200, -1e200]))  # squares beyond the doubles
+    assert wide.spread == wide.merge(Histogram.of(np.array([1e200]))).spread == np.inf
 
 
 def test_merged_summaries_are_those_of_all(run):

@@ -177,7 +177,7 @@ def test_the_slowest_free_motions_are_all_alike(scene, omega_over_V):
     close(ratios, np.broadcast_to(ratios[0], ratios.shape), tol.TABLE_SLOW)
     late = slow[1]
     kinetic = 0.5 * (late.V**2 + scene.j * late.omega**2)
-    gone = np.diff(kinetic) + np.diff(late.loss_friction + late.loss_rolling)
+    gone = np.diff(kinetic) + np.diff(late.slip_loss + late.rolling_loss)
     close(gone / kinetic[0], np.zeros(2), tol.TABLE_SLOW, scale=1.0)
 
 

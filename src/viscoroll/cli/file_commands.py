@@ -31,8 +31,10 @@ from .arguments import FIGURES, FILE, SCENE, command, numbers, option, output, r
 def show(arguments: Namespace) -> None:
     """Print the moduli, relaxation modes and creep modes of each material of a file.
 
-    Moduli are in Pa, times in s; creep modes are printed as strengths J_i, divided by the long-time
-    compliance, and times T_i.  An elastic material has no table of modes.
+    Moduli are in Pa, times in s.  Relaxation modes are printed as strengths E_i, divided by the
+    long-time modulus, and times tau_i, creep modes as strengths J_i, divided by the long-time
+    compliance, and times T_i; above them stands T_mean = sum J_i T_i, with M/P = V T_mean at low
+    speeds.  An elastic material has none of these.
 
     arguments: parsed command line with file, path of a TOML file with [material] or [base], or of
         the netCDF (.nc) of a material.

@@ -377,7 +377,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ViscorollError, ImportError) as error:
         return _print_error(error)
     except MemoryError as error:
-        return _print_error(f"not enough memory{f' ({error})' if str(error) else ''}")
+        found = f" ({error})" if str(error) else ""
+        return _print_error(
+            f"not enough memory{found}: ask for fewer speeds, times, nodes or motions at once"
+        )
     except KeyboardInterrupt as interrupt:
         if isinstance(interrupt, Interrupted):
             _print_line(interrupt)

@@ -303,7 +303,10 @@ def evaluate_contact(
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
         raise ParameterError(
-            "method", "'direct'", "'table': method 'direct' takes alpha, one relaxation time"
+            "method",
+            "'direct'",
+            "'table' where a material is given: method 'direct' needs one relaxation time, by "
+            "alpha of a Scene, or T_epsilon and T_sigma of a Cylinder",
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):

@@ -300,10 +300,13 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
 
     bodies: a :class:`CoupledBody` for each body that deforms, of finite thickness.
     u: kappa |V|, dimensionless, >= 0 or infinite.
-    profile: :class:`CoupledProfile`, tractions of the state.
-    Returns the approach divided by l0^2/R, a float.
+    profile: :class:`CoupledProfile`, tractions of the state, of which nodes, shift, p and q are
+        read; x is counted from the axis, nodes + shift.
+    Returns the approach divided by l0^2/R, a float, positive where the bodies have come closer than
+    at their first touch.
     """
     half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    # integrals over k > 0 by equal steps in s, with k = ln(1 + e^s)/half and weights dk
     s = np.arange(*_WAVES)
     k = np.logaddexp(0.0, s) / half
     weights = (_WAVES[2] / half) / (1.0 + np.exp(-s))
@@ -318,6 +321,7 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
         L, _, C = layer_transforms(body.nu, k * body.thickness)
         work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
         total += body.share * float(weights @ work.real) / np.pi
+    # int p x^2 dx by Simpson's rule, exact as p is linear in each element
     middle = 0.5 * (profile.nodes[:-1] + profile.nodes[1:])
     lengths = np.diff(profile.nodes)
     ends = profile.p * (profile.nodes + profile.shift) ** 2

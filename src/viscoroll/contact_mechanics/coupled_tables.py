@@ -76,7 +76,8 @@ def coupled_law(
 
     scene: dimensionless parameters of one material, alpha, kappa and mu, numbers.
     nodes: numbers of nodes of speed and of creepage, the second odd; None: 5 to 13 a decade of
-        speed between the rates of the bodies, the more the faster their compliance grows, and 33.
+        speed between the rates of the bodies, the more the faster their compliance grows, and 27
+        (:data:`NODES`).
     progress: whether a progress bar is drawn on standard error, after one second.
     Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.
     Raises ConvergenceError for a state that is not solved, and ParameterError for too few nodes.
@@ -111,10 +112,10 @@ def tabulate(
 ) -> CoupledRows:
     """Solve the rows of a table, on threads, and measure its errors.
 
-    pair: the bodies.
-    mu: coefficient of friction.
-    nodes, progress: as in :func:`coupled_law`.
-    Returns :class:`CoupledRows` with ``errors``.
+    pair: :class:`CoupledPair`, the bodies.
+    mu: coefficient of friction, > 0.
+    nodes, progress: as in :func:`coupled_law`; 4 to 1000 nodes of speed, 9 to 1001 of creepage.
+    Returns :class:`CoupledRows` with ``errors``: rows for u = 0, each node of u, and u infinite.
     Raises ConvergenceError for a state that is not solved, and ParameterError for ``nodes``.
     """
     count, across = (None, NODES) if nodes is None else nodes
@@ -127,6 +128,7 @@ def tabulate(
     u = speed_nodes(pair, count)
     t = np.arange(-(across // 2), across // 2 + 1) / (across // 2)  # 0 exactly in the middle
     speeds = np.concatenate([[0.0], u, [math.inf]])
+    # reduced creepages of the middle, the negative and positive onset of full slip, free rolling
     edges = np.empty((speeds.size, 4))
     fields = np.empty((speeds.size, across, len(FIELDS)))
     # all rows of elastic bodies are equal: only the first is solved

@@ -308,7 +308,8 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
                 name,
                 "a function",
                 "a number",
-                f"{name} is a function: then the call must have a single cylinder",
+                f"{name} is a function of t, which serves a single cylinder: make a call for "
+                f"each cylinder, or give {name} as numbers or a Schedule",
             )
         require_time_argument(name, value)
         return lambda t: (

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import math
 import os
 import re
 import secrets
@@ -19,6 +20,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import is_dataclass
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
@@ -357,11 +359,20 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     dict.
 
     path: path of the file, in UTF-8; a byte order mark is ignored.
-    Raises FileError if it cannot be read, is not UTF-8 or is not TOML.
+    Raises FileError if it cannot be read, is not UTF-8 or is not TOML, whose integers have 64 bits.
     """
+    import msgspec
+
     try:
         with as_file_error(path, "cannot be read"):
-            return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+            text = Path(path).read_text(encoding="utf-8-sig")
+            content = tomllib.loads(text, parse_float=partial(_finite, path))
+        msgspec.msgpack.encode(content)  # tomllib reads longer integers
+    except OverflowError as error:
+        problem = "has an integer of more than 64 bits: write it with a decimal point"
+        raise FileError(path, problem) from error
+    except FileError:
+        raise
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
     except (
@@ -370,6 +381,18 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     ) as error:  # a ValueError of tomllib, or of Python for a number of 5000 digits
         advice = _advise_on_comma(Path(path), str(error))
         raise FileError(path, f"is not TOML ({error}){advice}") from error
+    return content
+
+
+def _finite(path: str | PathLike[str], text: str) -> float:
+    """Return the number that ``text`` in a TOML file means.
+
+    path: path of the file, for the error.
+    Raises FileError for a number beyond the doubles, as 1e400, which Python reads as infinite.
+    """
+    if math.isinf(number := float(text)) and "inf" not in text:
+        raise FileError(path, f"has {text}, beyond 1.8e308: write inf if that is meant")
+    return number
 
 
 def _advise_on_comma(path: Path, problem: str) -> str:

@@ -26,6 +26,7 @@ enum { OK = 0, ERROR = 3 }; /* as in both versions */
 /* Modes of an instance, as in both versions; model exchange has the third and the fourth, co-simulation the fifth. */
 enum { INSTANTIATED = 1, INITIALIZATION = 2, EVENT = 4, CONTINUOUS = 8, STEP = 16, TERMINATED = 32 };
 enum { RUNNING = EVENT | CONTINUOUS | STEP, INITIALIZED = INITIALIZATION | RUNNING | TERMINATED };
+enum { BEGINNING = INSTANTIATED | INITIALIZATION }; /* in which the states are those of the start */
 /* in which values may be read: of version 3 in every mode */
 enum { GETTING = FMI_VERSION == 3 ? INSTANTIATED | INITIALIZED : INITIALIZED };
 /* kinds of variables: computed, input, parameter above 0 that may change between steps, parameter of the start alone */
@@ -49,15 +50,6 @@ typedef struct {
 
 static void reset(instance *m) {
   memcpy(m->x, START, sizeof START), m->step = 0.0, m->stale = 1, m->stop = HUGE_VAL, m->mode = INSTANTIATED;
-}
-
-static instance *create(const char *name, const char *token, void *environment, logger log, int exchange) {
-  instance *m = strcmp(token, TOKEN) ? NULL : (instance *)calloc(1, sizeof *m);
-  if (!m) return NULL;
-  snprintf(m->name, sizeof m->name, "%s", name ? name : "");
-  m->environment = environment, m->log = log, m->exchange = exchange;
-  reset(m);
-  return m;
 }
 
 static int tell(const instance *m, const char *text) {
@@ -92,6 +84,20 @@ static int in_mode(const instance *m, int allowed, const char *call) {
 /* Change the mode from one of the allowed ones. */
 static int change_mode(instance *m, int allowed, int mode, const char *call) {
   return in_mode(m, allowed, call) ? ERROR : (m->mode = mode, OK);
+}
+
+/* A new instance; NULL, which the log explains, for another token or for what the FMU has not: other says it, or is NULL.
+ */
+static instance *create(const char *name, const char *token, void *environment, logger log, int exchange,
+    const char *other) {
+  instance *m = (instance *)calloc(1, sizeof *m);
+  if (!m) return NULL;
+  snprintf(m->name, sizeof m->name, "%s", name ? name : "");
+  m->environment = environment, m->log = log, m->exchange = exchange;
+  reset(m);
+  if (!token || strcmp(token, TOKEN)) other = "token: must be " TOKEN ", that of modelDescription.xml";
+  else if (!ROLLER && !exchange) other = "co-simulation: is not there: must be model exchange";
+  return other ? (tell(m, other), free(m), NULL) : m;
 }
 
 /* R/l0, Eq. (4) */
@@ -163,9 +169,9 @@ static int advance(instance *m, double h) {
   if (in_range(m)) return ERROR;
   double *x = m->x, unit = x[n_R] / x[n_T_ref];
   vr_roller r = roller(m);
-  if (x[n_rtol] >= 1.0) return refuse(m, "rtol", x[n_rtol], "below 1");
+  if (!(x[n_rtol] >= 1e-12 && x[n_rtol] <= 1e-2)) return refuse(m, "rtol", x[n_rtol], "in [1e-12, 0.01]"); /* as of roll */
   switch (vr_roll(&r, h / x[n_T_ref], x[n_rtol])) {
-  case VR_STUCK: return refuse(m, "rtol", x[n_rtol], "larger: its steps fell to rounding");
+  case VR_STUCK: return refuse(m, "rtol", x[n_rtol], "larger: its steps fell to rounding or are too many");
   case VR_REFUSED: return refuse(m, "communicationStepSize", h, "such that the motion stays in the range of doubles");
   }
   x[n_v] = r.V * unit, x[n_slip] = r.slip * unit, x[n_x] = r.x * x[n_R], m->step = r.step, m->stale = 1;
@@ -231,8 +237,10 @@ static double nominal(const instance *m, size_t state) { return 1.0; }
 
 static int update(instance *m, const char *call) {
   if (in_mode(m, GETTING, call)) return ERROR;
-  if (m->stale && m->mode == INITIALIZATION && start(m)) return ERROR; /* the states are those of the start */
+  if (m->stale && m->mode & BEGINNING && start(m)) return ERROR;
   if (m->stale && (in_range(m) || evaluate(m))) return ERROR;
+  for (int n = 1; m->stale && n < COUNT; n++)
+    if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite: an input or a parameter is too large or small");
   m->stale = 0;
   return OK;
 }
@@ -274,29 +282,38 @@ static int slopes(instance *m, const unsigned u[], size_t nu, const unsigned k[]
   return OK;
 }
 
+/* OK if a tool hands over as many values as there are. */
+static int count(const instance *m, size_t n, size_t other) {
+  char text[40];
+  snprintf(text, sizeof text, "%d", (int)other);
+  return n == other ? OK : refuse(m, "number of values", n, text);
+}
 static int states(instance *m, double y[], size_t n) {
-  if (in_mode(m, INITIALIZED & ~STEP, "get states")) return ERROR;
-  if (m->stale && m->mode == INITIALIZATION && start(m)) return ERROR;
+  if (in_mode(m, INITIALIZED & ~STEP, "get states") || count(m, n, STATES)) return ERROR;
+  if (m->stale && m->mode & BEGINNING && start(m)) return ERROR;
   return memcpy(y, m->x + FIRST_STATE, n * sizeof *y), OK;
 }
 static int set_states(instance *m, const double y[], size_t n) {
-  if (in_mode(m, CONTINUOUS, "set states")) return ERROR;
+  if (in_mode(m, CONTINUOUS, "set states") || count(m, n, STATES)) return ERROR;
   return memcpy(m->x + FIRST_STATE, y, n * sizeof *y), m->stale = 1, OK;
 }
 static int rates(instance *m, double y[], size_t n) {
-  if (in_mode(m, INITIALIZED & ~STEP, "get rates") || update(m, "get rates")) return ERROR;
+  if (in_mode(m, INITIALIZED & ~STEP, "get rates") || count(m, n, STATES) || update(m, "get rates")) return ERROR;
   return memcpy(y, m->x + FIRST_RATE, n * sizeof *y), OK;
 }
 static int nominals(const instance *m, double y[], size_t n) {
+  if (count(m, n, STATES) || in_range(m)) return ERROR;
   for (size_t i = 0; i < n; i++) y[i] = nominal(m, i);
   return OK;
 }
-static int at(instance *m, double t) { return m->x[n_time] = t, OK; }
+static int at(instance *m, double t) {
+  return isfinite(t) ? (m->x[n_time] = t, OK) : refuse(m, "time", t, "finite");
+}
 /* The experiment begins at t and, where the tool has said so, ends at stop. */
 static int plan(instance *m, double t, int ends, double stop) {
   if (in_mode(m, INSTANTIATED, "start of the experiment")) return ERROR;
   if (ends && !(stop >= t)) return refuse(m, "stopTime", stop, "at or after the start");
-  return m->stop = ends ? stop : HUGE_VAL, at(m, t);
+  return at(m, t) ? ERROR : (m->stop = ends ? stop : HUGE_VAL, OK);
 }
 static int set_time(instance *m, double t) { return in_mode(m, EVENT | CONTINUOUS, "set time") ? ERROR : at(m, t); }
 static int leave_initialization(instance *m) {
@@ -317,11 +334,11 @@ static int step(instance *m, double t, double h) {
   return advance(m, h) ? ERROR : at(m, t + h);
 }
 
-/* The complete state of an instance: time, parameters, inputs, states, the trial step and the mode.  token: of the FMU, so that
- * the state of another FMU is refused. */
+/* The complete state of an instance: time, parameters, inputs, states, the trial step, the announced end and the mode.
+ * token: of the FMU, so that the state of another FMU is refused. */
 typedef struct {
   char token[64];
-  double x[COUNT], step;
+  double x[COUNT], step, stop;
   int mode;
 } snapshot;
 
@@ -329,7 +346,8 @@ static int save(instance *m, void **state) {
   snapshot *s = *state ? (snapshot *)*state : (snapshot *)calloc(1, sizeof *s);
   if (!s) return refuse(m, "memory for a state, in bytes", sizeof *s, "there");
   snprintf(s->token, sizeof s->token, "%s", TOKEN);
-  memcpy(s->x, m->x, sizeof s->x), s->step = m->step, s->mode = m->mode, *state = s;
+  memcpy(s->x, m->x, sizeof s->x), s->step = m->step, s->stop = m->stop, s->mode = m->mode;
+  *state = s;
   return OK;
 }
 static int restore(instance *m, const void *state) {
@@ -337,7 +355,7 @@ static int restore(instance *m, const void *state) {
   if (!s) return refuse(m, "FMU state", 0.0, "one that was taken or deserialized");
   if (s->mode & (m->exchange ? STEP : EVENT | CONTINUOUS))
     return tell(m, "FMU state: is that of another interface: must be of model exchange or co-simulation as this one");
-  memcpy(m->x, s->x, sizeof m->x), m->step = s->step, m->mode = s->mode, m->stale = 1;
+  memcpy(m->x, s->x, sizeof m->x), m->step = s->step, m->stop = s->stop, m->mode = s->mode, m->stale = 1;
   return OK;
 }
 static int release(void **state) {
@@ -361,11 +379,13 @@ static int deserialize(instance *m, const char bytes[], size_t size, void **stat
 typedef fmi3ValueReference ref;
 const char *fmi3GetVersion(void) { return "3.0"; }
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String path, fmi3Boolean visible,
-    fmi3Boolean on, fmi3InstanceEnvironment e, fmi3LogMessageCallback log) { return create(name, token, e, log, 1); }
+    fmi3Boolean on, fmi3InstanceEnvironment e, fmi3LogMessageCallback log) { return create(name, token, e, log, 1, NULL); }
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String path, fmi3Boolean visible,
     fmi3Boolean on, fmi3Boolean events, fmi3Boolean early, const ref r[], size_t n, fmi3InstanceEnvironment e,
     fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update) {
-  return (void)update, ROLLER ? create(name, token, e, log, 0) : NULL;
+  (void)update;
+  return create(name, token, e, log, 0, events ? "eventModeUsed: must be false: co-simulation has no event mode" :
+      n ? "requiredIntermediateVariables: must be none" : NULL);
 }
 void fmi3FreeInstance(fmi3Instance c) { free(c); }
 fmi3Status fmi3Reset(fmi3Instance c) { return reset(c), fmi3OK; }
@@ -384,18 +404,18 @@ fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {
   return in_mode(c, INITIALIZATION | EVENT, "evaluate discrete states");
 }
 fmi3Status fmi3SetFloat64(fmi3Instance c, const ref r[], size_t n, const fmi3Float64 y[], size_t ny) {
-  return n == ny ? set(c, r, n, y) : fmi3Error;
+  return count(c, ny, n) ? ERROR : set(c, r, n, y);
 }
 fmi3Status fmi3GetFloat64(fmi3Instance c, const ref r[], size_t n, fmi3Float64 y[], size_t ny) {
-  return n == ny ? get(c, r, n, y) : fmi3Error;
+  return count(c, ny, n) ? ERROR : get(c, r, n, y);
 }
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const ref u[], size_t nu, const ref k[], size_t nk,
     const fmi3Float64 seed[], size_t ns, fmi3Float64 s[], size_t n) {
-  return nk == ns && nu == n ? slopes(c, u, nu, k, nk, seed, s, 0) : fmi3Error;
+  return count(c, ns, nk) || count(c, n, nu) ? ERROR : slopes(c, u, nu, k, nk, seed, s, 0);
 }
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const ref u[], size_t nu, const ref k[], size_t nk,
     const fmi3Float64 seed[], size_t ns, fmi3Float64 s[], size_t n) {
-  return nu == ns && nk == n ? slopes(c, u, nu, k, nk, seed, s, 1) : fmi3Error;
+  return count(c, ns, nu) || count(c, n, nk) ? ERROR : slopes(c, u, nu, k, nk, seed, s, 1);
 }
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) { return *n = STATES, fmi3OK; }
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) { return *n = 0, fmi3OK; }
@@ -432,8 +452,7 @@ const char *fmi2GetVersion(void) { return "2.0"; }
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, fmi2String path,
     const fmi2CallbackFunctions *f, fmi2Boolean visible, fmi2Boolean on) {
-  if (!ROLLER && type == fmi2CoSimulation) return NULL;
-  return create(name, token, f ? f->componentEnvironment : NULL, f ? f->logger : NULL, type == fmi2ModelExchange);
+  return create(name, token, f ? f->componentEnvironment : NULL, f ? f->logger : NULL, type == fmi2ModelExchange, NULL);
 }
 void fmi2FreeInstance(fmi2Component c) { free(c); }
 fmi2Status fmi2Reset(fmi2Component c) { return reset(c), fmi2OK; }

@@ -477,7 +477,10 @@ def _find_length(
         )
     found = f"{modes.cover.thinnest:g}"
     raise ParameterError(
-        "thickness/l0", found, "larger: no contact length with this load was found"
+        "thickness/l0",
+        found,
+        "larger: no contact length that carries the load was found; take a thicker layer or a "
+        "smaller load (l0: contact length at rest of half-spaces)",
     )
 
 

@@ -396,11 +396,11 @@ def _in_si(table: Dataset) -> Dataset:
         try:
             by = conversion_factor(unit, wanted)[0]
         except ParameterError as error:
-            allowed = (
-                "1, since V has no unit"
-                if wanted == "1"
-                else f"a unit of {wanted}, since V has a unit"
-            )
+            allowed = "1" if wanted == "1" else f"a unit of {wanted}"
+            if name == "V":
+                allowed += ", or 1 of a grid without dimension"
+            elif given["V"] == "1":
+                allowed += ", since V has no unit"
             raise ParameterError(f"unit of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(np.float64) * by})
     if given["V"] == "1":

@@ -69,6 +69,7 @@ def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
     from ..kernels.law.law_record import E0
 
     alpha = np.ascontiguousarray(alpha, dtype=np.float64)
+    # numbers n of all octaves that occur, 2^n <= alpha < 2^(n + 1)
     octaves = np.flatnonzero(np.bincount(_exponents(alpha) - 1))
     with _lock:
         for octave in octaves[_octave_table[octaves, -1] == 0].tolist():
@@ -78,6 +79,7 @@ def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
             )
             _octaves[octave] = axis
             _octave_table[octave] = axis.numbers.ctypes.data, axis.starts.ctypes.data, axis.rows
+    # a record holds one element at a time: it has room for the rows of any of these octaves
     row_count = int(_octave_table[octaves, -1].max())
     records = []
     for _ in range(count):
@@ -334,8 +336,7 @@ def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
     many_nu: whether laws are made at the 12 nodes of Poisson's ratio in [0, 1/2] too; else at the
         ``nu`` of ``thinnest`` alone.
     Returns two values.  The first is an array (laws, numbers).  Law k n + i belongs to Poisson's
-    ratio k and thickness
-    i: n = 14 thicknesses ascend, at the Chebyshev zeros of the logarithm of the thickness;
+    ratio k and thickness i: n = 14 thicknesses ascend, at the Chebyshev zeros of their logarithm;
     Poisson's ratios fall from near 1/2 to near 0, at the Chebyshev zeros x of nu = 3/4 - 3^((1 +
     x)/2)/4.  Its numbers are ``rows`` and then ``cover_rows`` of the record of that law.  The
     second is the record of the last law, :class:`.law_record.Law`, from which number of
@@ -353,6 +354,7 @@ def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
     for nu in ratios.tolist():
         for node in to_doubles(chebyshev(_THICKNESS_NODES)).tolist():
             cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * node), nu)
+            # the upper end of the octave determines the number of rows, so that all have as many
             record = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
             numbers.append(np.concatenate([record.rows, record.cover_rows]))
     return np.array(numbers), record

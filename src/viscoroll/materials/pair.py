@@ -114,8 +114,8 @@ class Pair:
         """Whether both bodies deform and relax alike: one body is given for both, or E, nu, series
         and T_ref are equal.
 
-        Two different objects of which one is a :class:`Solid` are never alike.  A thickness is not
-        compared.
+        Two different objects of which one is a :class:`Solid` are never alike: its fields may be
+        arrays of many bodies, which have no single answer.  A thickness is not compared.
         """
         one = self.cylinder
         other = self.half_space

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..core import FileError, ParameterError, suggestion
 from ..materials import ABSOLUTE_ZERO
-from .text_cells import NO_UNIT, Numbers, conversion, readings
+from .text_cells import MULTIPLIED, NO_UNIT, Numbers, conversion, readings
 from .text_table import Table, find_column
 
 # --- Names of the columns of tests of materials in five languages ---
@@ -161,10 +161,6 @@ _RANGES = {
 CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*min|deg|°")
 #: a heading that begins with G and at most three further letters or digits
 _OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
-#: a power of ten in a heading, or a logarithm of a base that is not read
-_POWER_OF_TEN = re.compile(
-    r"(?<!\d)10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])|(?:\b1|[*x×·]\s*)[eE][+-]?\d|(?i:\blog_?(?!(?:10|2)(?!\d))\d)"
-)
 #: units of what instruments measure beside moduli, which end a heading without brackets
 _RAW = re.compile(r"[kmcdMµ]?N(?:\W?[cm]?m|/[cm]?m)?|kgf?|lbf?|[mµ]m|m?V")
 #: units of angles
@@ -287,7 +283,7 @@ def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> 
         for each in readings(heading or "column", row)
     ]
     ways.sort(key=lambda each: each.unit in NO_UNIT)
-    if name not in overruling and _POWER_OF_TEN.search(heading):
+    if name not in overruling and MULTIPLIED.search(heading):
         return [ways[0]._replace(unit=heading)]
     spelled = {
         each.unit for each in known if each.name == name

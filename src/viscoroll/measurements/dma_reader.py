@@ -199,7 +199,8 @@ def read_relaxation(
     if "time" not in alike or not {*pair} <= alike.keys():
         raise missing(
             table,
-            "no column was found for time, or none for the modulus, or for stress and strain",
+            "relaxation",
+            "no column was found for time, or none for relaxation modulus, or stress and strain",
             others,
         )
     if len(table.starts) > 1:
@@ -501,7 +502,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
                 if columns.keys() >= {*pair}:
                     others |= unused
                     return _Choice(mode, pair, columns)
-    raise missing(table, problem, others)
+    raise missing(table, "dma", problem, others)
 
 
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:

@@ -528,7 +528,9 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         except ParameterError as error:
             per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
             raise described_error(
-                name, f"is in {error.value}", f"in a unit of the dimension of {unit}{per}"
+                name,
+                f"is in {error.value}",
+                f"in a unit of the dimension of {unit}{per}: give units = {{ {name} = ... }}",
             ) from error
     return found
 

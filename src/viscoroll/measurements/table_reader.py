@@ -99,8 +99,11 @@ SOFTEST = 1e3
 ONE_FREQUENCY = 1e-3
 #: ratio of moduli at one frequency and one temperature above which something else was varied
 _REPEATED = 1.25
-#: advice where columns are not understood
-_NAME_THEM = "name the columns by columns={...} (`viscoroll material fit`: --column NAME=HEADING)"
+#: test -> advice where columns are not understood; the program reads no relaxation tests
+_NAME_THEM = {"relaxation": "name the columns by columns={QUANTITY: HEADING, ...}"}
+_NAME_THEM["dma"] = (
+    f"{_NAME_THEM['relaxation']} (`viscoroll material fit`: --column QUANTITY=HEADING)"
+)
 #: a number in degrees Celsius, or of three digits in kelvin, which is no rate, and none that a
 #: comma in a row of cells may have cut; before it what makes it the end of a range, as "20 to "
 _IN_DEGREES = re.compile(
@@ -166,16 +169,17 @@ class Understood(NamedTuple):
         return notes + [f"lines below the rows are left out, as {quoted(below[:1])}"] * bool(below)
 
 
-def missing(table: Table, problem: str, others: Mapping[str, str]) -> FileError:
+def missing(table: Table, test: str, problem: str, others: Mapping[str, str]) -> FileError:
     """Return the error, not raised, of columns that are missing: the problem, headings, and advice.
 
     table : :class:`Table`, the table of the file.
+    test : "dma" or "relaxation".
     problem : words on what is missing.
     others : heading -> why the column is left out.
     """
     reasons = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
     headings = ", ".join(repr(heading or f"column {n}") for n, heading in enumerate(table.headings))
-    advice = f"; {_NAME_THEM}" * ("" in others.values() or not others)
+    advice = f"; {_NAME_THEM[test]}" * ("" in others.values() or not others)
     return FileError(table.path, f"{problem}{reasons}; headings: {headings}{advice}")
 
 
@@ -217,8 +221,11 @@ def understand(
     if table.without_headings and not named:
         if len(table.headings) != len(bare):
             called = ", ".join(map(repr, table.headings))
-            problem = f"has {len(table.headings)} columns, and no headings for {' and '.join(bare)}"
-            raise FileError(path, f"{problem}; they are called {called}: {_NAME_THEM}")
+            problem = (
+                f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
+                f"({', '.join(bare)})"
+            )
+            raise FileError(path, f"{problem}; they are called {called}: {_NAME_THEM[test]}")
         named = dict(zip(bare, table.headings, strict=True))
     found, others = columns_of(table, test, named=named, overruling=overruling, defaults=defaults)
     check_names("units", overruling, [column.name for column in found], "a quantity of this file")

@@ -111,7 +111,7 @@ def fault_of(cell: str, decimal: str) -> str:
             "digits: "
             "write only decimal marks"
         )
-    return f"is not a number{_MARKS[decimal]}"
+    return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else ': remove its row'}"
 
 
 def numbers_of(cells: list[str]) -> Numbers:
@@ -285,6 +285,11 @@ _LOGARITHM = re.compile(
 )
 #: the same in brackets behind the name, as in "E' (log)"
 _LOG_BEHIND = re.compile(r"(?i)^(.+?)[\s,_]*[\[(]\s*((?:loge|log|lg|ln)(?:10|2)?)\s*[\])]")
+#: a factor in a heading, as a power of ten or "*1000", or a logarithm of a base that is not read
+MULTIPLIED = re.compile(
+    r"(?<!\d)10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])|(?:\b1|[*x×·]\s*)[eE][+-]?\d|(?i:\blog_?(?!(?:10|2)(?!\d))\d)"
+    r"|(?:[*×·/÷]|(?<=[\s\])('])x|\bin)\s*\d|(?i:\b(?:thousand|million)s?\b)|^\s*\d[\d.]*\s*(?:[*×·]|x(?![^\W\d_]))|^\s*10{2,}\s+[^\W\d_]['(\[\s]"
+)
 #: a text in parentheses, and what follows
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..core import FileError, Floats, ParameterError, is_unit, suggestion, warn_of_model
 from .text_cells import (
+    MULTIPLIED,
     NO_UNIT,
     SEPARATORS,
     Line,
@@ -466,7 +467,8 @@ def find_column(table: Table, name: str) -> int | None:
     found = exact or [n for n, heading in enumerate(table.headings) if _is_named(heading, name)]
     if len(found) > 1:
         headings = " and ".join(repr(table.headings[n]) for n in found)
-        advice = "rename or remove one in the file" if exact else "name one of them with its unit"
+        alike = exact or len({table.headings[n] for n in found}) < len(found)
+        advice = "rename or remove one in the file" if alike else "name one of them with its unit"
         raise FileError(table.path, f"columns {headings} are both named {name!r}: {advice}")
     return found[0] if found else None
 
@@ -520,10 +522,14 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
         raise missing_column(table, name)
     if len(table.starts) > 1:
         raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them")
-    found = readings(table.headings[index], table.units[index])
+    heading = table.headings[index]
+    if not unit and MULTIPLIED.search(heading):
+        unit = heading  # in which nothing is converted
+    found = readings(heading, table.units[index])
+    # a heading can be read in several ways: the unit is that of the way that gives this name, else
+    # of the likeliest way that has one; ``log`` is the same for all ways
     named = [each for each in found if each.name == name]
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
-    heading = table.headings[index]
     advice = f"write its unit in the heading, as in '{heading} [{wanted}]'"
     factor, offset = conversion_of_column(
         table.path, heading, unit=unit, wanted=wanted, advice=advice

@@ -414,7 +414,10 @@ def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
             f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the "
             "end of the motion: "
         )
-        sentence += "leave it out (a brake stops the motion in finite time: see switches)"
+        sentence += (
+            "leave rest out, or let the load end earlier (when a brake stops the cylinder is in "
+            "switches of a Motion)"
+        )
         raise ParameterError("rest", rest, "None", sentence)
 
 

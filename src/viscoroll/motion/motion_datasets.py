@@ -236,7 +236,7 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion,
     drive_force_time), or where motions have times of their own (motion, drive_force_corner).
-    Attributes are those of :func:`column_attributes` with "given: " before long_name, of a schedule
+    Attributes are those of :func:`.scale.attributes` with "given: " before long_name, of a schedule
     ``comment``, of a feedback gain_V and gain_omega.
 
     result: :class:`Motion` or :class:`Ensemble`, of which drive and scale are read.
@@ -270,6 +270,7 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
             dims = "motion", f"{key}_time" if times.ndim == 1 else f"{key}_corner"
             variables[f"{key}_time"] = dims[-times.ndim :], times, about_times
             about = about | {"comment": _LINEAR}
+        # what all motions share has no axis of the motions: "motion", the first of dims, falls away
         array = _shared(np.asarray(value, np.float64), len(dims) - 1)
         variables[key] = dims[len(dims) - array.ndim :], array, about
     return variables, texts

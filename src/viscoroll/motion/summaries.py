@@ -55,6 +55,7 @@ class Histogram(msgspec.Struct):
     values: Floats | None = None
 
     @classmethod
+    @np.errstate(over="ignore")  # a sum of squares beyond the doubles is infinite
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
         """Make the histogram of those values that are finite.
 
@@ -91,7 +92,8 @@ class Histogram(msgspec.Struct):
         count = self.count + other.count
         distance = other.mean - self.mean
         mean = self.mean + distance * (other.count / count)
-        spread = self.spread + other.spread + distance**2 * (self.count * (other.count / count))
+        between = distance * distance * (self.count * (other.count / count))
+        spread = self.spread + other.spread + between
         extremes = min(self.low, other.low), max(self.high, other.high)
         return Histogram(
             bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes

@@ -161,6 +161,7 @@ def roll_inputs(
         unsteady=settings.unsteady,
         rested=settings.rested,
         fields=run.fields,
+        # one flow map for all calls, so that bits do not depend on them; None if all starts are 0
         speed=run.fastest or None if run.method == "flow" else None,
         threads=threads,
     )

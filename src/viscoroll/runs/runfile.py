@@ -356,7 +356,9 @@ def _check_inputs(run: Run) -> None:
         if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
             raise locate_error(run.path, inputs.content, error) from error
         if error is not None:
+            # without "line N: [section] " of a FileError, which the new error states itself
             problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
+            # a single end is refused too: the range is at fault, else that the motions differ
             if any(_fault_of(run, medians | {number.name: end}) for end in ends.tolist()):
                 problem = (
                     f"draws extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}; add "

@@ -537,7 +537,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     has several axes or has values that are no finite numbers; MissingDependencyError for .parquet
     without pyarrow.
     """
-    from ..measurements.text_cells import readings
+    from ..measurements.text_cells import MULTIPLIED, readings
     from ..measurements.text_table import column_in_unit, conversion_of_column, named_table
 
     if path.suffix == ".csv":
@@ -547,7 +547,10 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
         import_extra("pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
-        given = next((each.unit for each in readings(column) if each.unit), "")
+        ways = readings(column)
+        given = next((each.unit for each in ways if each.unit), "")
+        if ways[0].log or MULTIPLIED.search(column):
+            given = column  # in which nothing is converted
         advice = f"name the column '{column} [{unit}]', or with the unit that it has"
     elif path.suffix == ".nc":
         import xarray as xr

@@ -723,14 +723,19 @@ def _values(first, second):
 def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, request):
     """Write M of a state on half-spaces, which depends on the speed alone, if it is requested.
 
-    n, c, scratch, request : as of :func:`_write_other_fields`.
+    n : int, index of the state in the rows of ``request.out``.
+    c : unsigned int, its column in the scratch.
     position, functions : :class:`.law_functions.RowPosition` of u, and
-        :class:`.law_functions.LengthAndMoment` there.
+        :class:`.law_functions.LengthAndMoment` there, of which m and ``scale`` are read.
+    scratch : of it u, kappa and V of the state are used.
+    request : :class:`.law_record.Request`; M, in units of P R and of the sign of V, is written into
+        ``out``.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`), and then nothing
         is written; None for half-spaces.
     Returns nothing.
     """
     if cover_rows is None:
+        # m is M/V and the factor V; in the fast limit, where M/V may underflow, M/(V z) and V z
         factor = moment_factor(
             position, scratch[_U + c], functions.scale, _state(c, scratch, request)
         )

@@ -522,7 +522,7 @@ def _collect_points(row, first, count, over_v, grid):
 @kernel
 def _collect_slow_points(first, count, over_v, grid):
     """Write the 36 points of the slow row, from 1/z near 0 to a little beyond its end, into the
-    scratch of ``grid``.
+    scratch of ``grid``: the last 36 nodes of the grid, in Leja's order (:func:`_z_of_node`).
 
     Arguments are t = u or v divided by the end of the row, 2^e0.  Values count from the limit t ->
     0 (:func:`_slow_limit`); epsilon is divided by t, and functions that the grid has as products

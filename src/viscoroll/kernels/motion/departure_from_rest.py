@@ -113,7 +113,8 @@ def _d_at_zero_omega(scene):
 
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     """
-    L, delta_0 = rest_limits(scene, -1.0)
+    L, delta_0 = rest_limits(scene, -1.0)  # on the side d < 0
+    # (delta - delta_0)/delta_star at delta = -1, with delta_star = mu L/(2 kappa)
     creep = -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
     if by_value(scene.law).cover_rows is None:
         return creep

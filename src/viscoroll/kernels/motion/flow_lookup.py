@@ -135,6 +135,7 @@ def speed_at_slide_time(T, flow):
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), flow_layout.LOW)
     if row == 0:
         return flow.mu * T
+    # |V| over kappa mu |T|: first all octaves of T > 0, then as many of T < 0
     V = evaluate_single(
         flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t
     )[0]

@@ -229,15 +229,16 @@ def write_due_outputs(state, regime, step_state, work):
     """Write the outputs at times up to (1 + rtol) times the time reached, by the state reached.
 
     They are those at the end of the last step, which :func:`accept_step` leaves to the next one.
-    The quadratures keep their totals.
+    The factor matters where the added mass ends the motion early: it takes in an output that this
+    end misses by no more than rtol.  The quadratures keep their totals.
 
     state: State, at the time reached.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with that time, its segment and the next output.
     work: Workspace, of the motion; all rows of its outputs are written at these times, if there are
     any.
-    Returns the StepState with ``next_output`` after these outputs and h = 0, also where none was
-    due; all else stays.
+    Returns the StepState with ``next_output`` after these outputs and h = 0, which means that the
+    length of the next step is not chosen, also where none was due; all else stays.
     """
     column = step_state.next_output
     while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (

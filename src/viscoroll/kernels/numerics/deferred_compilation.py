@@ -221,7 +221,7 @@ def _pipelines():
         compiled to machine code.
         """
 
-        is_part = True
+        is_part = True  # read by _link
 
         def finalize(self):
             self._finalized = True

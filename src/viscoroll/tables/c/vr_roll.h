@@ -20,10 +20,14 @@ typedef struct {
   long steps, rejected;
 } vr_roller;
 
+/* Steps that one call may take: some seconds; a motion of the examples needs 1e2 to 1e4. */
+#define VR_MOST_STEPS 1000000L
+
 /* what vr_roll gives back */
 enum {
   VR_DONE = 0,
-  VR_STUCK = 1,  /* the steps fell to rounding, or the state left the range of doubles: it is that of the last step */
+  VR_STUCK = 1,  /* the steps fell to rounding or are more than VR_MOST_STEPS, or the state left the range of doubles:
+                    it is that of the last step */
   VR_REFUSED = 2 /* a number that is NaN, infinite or out of range: nothing has changed */
 };
 
@@ -108,6 +112,7 @@ static inline int vr_positive(double value) { return value > 0.0 && value < HUGE
 /* On by a time >= 0, with local errors of at most rtol: VR_DONE, VR_STUCK or VR_REFUSED */
 static inline int vr_roll(vr_roller *r, double time, double rtol) {
   double t = 0.0, h = r->step > 0.0 ? r->step : 1e-6 * time, f[2] = {0.0}, J[2][2] = {{0.0}};
+  const long most = r->steps + r->rejected + VR_MOST_STEPS;
   int fresh = 1;
   if (!(vr_finite(time) && time >= 0.0 && rtol > 0.0 && rtol < 1.0)) return VR_REFUSED;
   if (!(vr_positive(r->kappa) && vr_positive(r->mu) && vr_positive(r->gamma))) return VR_REFUSED;
@@ -121,6 +126,7 @@ static inline int vr_roll(vr_roller *r, double time, double rtol) {
       r->V = r->slip = 0.0; /* at rest, where nothing drives it */
       return VR_DONE;
     }
+    if (r->steps + r->rejected >= most) return VR_STUCK;
     int last = t + h >= time * (1.0 - 1e-14);
     double step = last ? time - t : h, y[2] = {r->V, r->slip}, x = r->x, error[2];
     if (fresh) vr_rates(r, y, f, J), fresh = 0;
