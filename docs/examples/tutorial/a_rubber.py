@@ -17,16 +17,18 @@ print("\n".join(data.read_text().splitlines()[:5]))
 omega, storage, loss = vr.read_dma(data)  # rad/s, Pa, Pa
 
 # %%
-# The contact law needs a Prony series, that is relaxation times and strengths.  ``fit_prony``
-# uses as few of them as a misfit of 1 % allows.
+# The rubber is described by a Prony series, that is relaxation times and strengths.  ``fit_prony``
+# fits the series to the data.  It takes the fewest relaxation times for which the misfit (the
+# relative error of the moduli, root mean square) is at most 1 %.
 fit = vr.fit_prony(omega, storage, loss, source="dma.csv")
 print(fit)
 
 # %%
 # Read the report first.  The misfit is below its limit.  The loss modulus agrees with the value
 # that follows from the slope of the storage modulus (Kramers-Kronig relation), so the two curves
-# are consistent.  Relaxation times outside the measured frequencies would change the rolling
-# resistance by 2 % at most, at speeds inside the measured band.
+# are consistent.  "Accuracy" says how far the data determine the rolling resistance M: other
+# relaxation times and strengths that fit the data as well give an M that differs by 2 % at most,
+# at speeds that the data cover.
 fine = np.geomspace(omega[0], omega[-1], 300)
 figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 axes.loglog(omega, storage, "C0o", omega, loss, "C1s", markersize=4)
@@ -51,8 +53,9 @@ print(f"contact length at rest: {1e3 * roller.l0:.1f} mm")
 # Landel and Ferry.
 #
 # A point of the surface passes through the contact in the transit time, the contact length divided
-# by the speed.  The inverse of this time must lie inside the measured frequencies.  Otherwise the
-# fit extrapolates: ``contact`` warns, and ``validity`` reports it.  The curves are dotted there.
+# by the speed.  Let f be the inverse of this time, in 1/s.  The data must contain the frequencies
+# from f to 3 f, in rad/s.  At other speeds the moduli are extrapolated: ``contact`` warns,
+# ``validity`` reports it, and the curves in the figure are dotted.
 shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 speed = np.geomspace(1e-4, 1e3, 300)  # m/s
 figure_2, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
@@ -75,6 +78,6 @@ axes.set(
 axes.legend(frameon=False)
 
 # %%
-# The small maxima belong to the relaxation times of the fit; the curve of the measured rubber is
-# smooth.  A rubber layer of finite thickness has another law: ``fit.material(thickness=...)``,
-# see :doc:`/howto/covers`.
+# Each small maximum belongs to one relaxation time of the series.  The real rubber has very many
+# relaxation times, close together, so its curve is smooth.  Here the rubber is a half-space.  For a
+# rubber layer of finite thickness give ``fit.material(thickness=...)``: :doc:`/howto/covers`.

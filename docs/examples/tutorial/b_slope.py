@@ -20,26 +20,29 @@ roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)
 slope = np.radians(0.5)
 
 # %%
-# First check the assumptions.  A motion needs one more than a contact at constant speed: the speed
-# must change little during the transit of the contact.  ``validity`` reports every assumption.
+# First check the assumptions of the model.  ``validity`` lists all of them.  A motion needs one
+# more than a contact at constant speed: the speed must change little in the time in which a point
+# passes through the contact (``steady`` in the list).
 print(roller.validity(2.0))
 
 # %%
-# No assumption is violated, and the error of the speed V is below 1 % to the end.  At 20 °C the
-# relaxation times are 300 times longer.  This matters only at low speeds (:doc:`/validity`):
+# No assumption is violated, and the error of the speed V stays below 1 % at every speed.  At 20 °C
+# the relaxation times are 300 times longer.  Then the error exceeds 1 %, but at low speeds only
+# (:doc:`/validity`):
 print(roller.replace(base=cool).validity(2.0).steady.sentence)
 
 # %%
-# ``steady`` gives every speed at which the force of the slope and the rolling resistance balance.
+# ``steady`` finds every speed at which the pull of the slope equals the rolling resistance.
 s = roller.steady(slope=slope)
 for V, stable in zip(s.V, s.stable, strict=True):
     print(f"{V:.3g} m/s: {'stable' if stable else 'unstable'}")
 
 # %%
-# The first is the terminal speed.  The second is unstable and far above any real speed.
+# The first is the terminal speed.  The second is unstable, and so high that it has no practical
+# meaning.
 #
-# The roller is launched at 2 m/s without rotation.  It slides until friction has accelerated the
-# rotation, and then approaches its terminal speed slowly.
+# Now the roller is launched at 2 m/s without rotation.  It slides until friction has accelerated
+# its rotation.  Then it rolls, and slowly approaches its terminal speed.
 t = np.unique(
     np.concatenate(
         [np.linspace(0.0, 0.3, 151), np.linspace(0.3, 120.0, 240)]
@@ -66,8 +69,8 @@ left.legend(frameon=False)
 print(f"it slides for {m.onset_time:.3f} s")
 
 # %%
-# The energy balance, in J per metre of length, consists of the losses by slip and by rolling
-# resistance and of the work of gravity.
+# The energies, in J per metre of length: lost by slip, lost by rolling resistance, and gained from
+# gravity on the slope.
 print(
     f"slip {m.slip_loss[-1]:.0f}, rolling {m.rolling_loss[-1]:.0f}, "
     "from the slope "

@@ -23,7 +23,7 @@ roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)
 
 # %%
 # Draw friction and slope.  A Sobol sequence covers both ranges more evenly than random numbers.
-# The seed makes the draw reproducible.
+# With the same ``seed`` the same values are drawn again.
 draw = vr.sampling.sample(
     20_000,
     seed=1,
@@ -61,8 +61,9 @@ print(
 )
 
 # %%
-# Friction determines only the duration of sliding, some tenths of a second.  The slope determines
-# the speed after two minutes: measure the slope.
+# Friction determines the duration of sliding, some tenths of a second, but has no influence on the
+# speed after two minutes.  That speed depends on the slope.  So, to predict it better, measure the
+# slope.
 #
 # Next steps: :doc:`/ensembles` shows how to compute a million motions from a run file, and
 # :doc:`/sensitivity` how much of the variance is due to each input.

@@ -2,9 +2,9 @@
 Rolling resistance over speed
 =============================
 
-At low speed the material relaxes completely within the contact, at high speed it hardly relaxes.
-In both limits little energy is lost.  Rolling resistance has its maximum where the transit time
-of the contact is about the relaxation time.
+At low speed the material relaxes completely while it passes through the contact, at high speed it
+hardly relaxes.  In both cases little energy is lost.  Rolling resistance has its maximum at the
+speed at which a point passes through the contact in about the relaxation time.
 """
 
 import matplotlib.pyplot as plt
@@ -28,10 +28,11 @@ axes.set(
 axes.legend(frameon=False)
 
 # %%
-# ``alpha`` is the instantaneous modulus divided by the long-time modulus, ``kappa`` the radius
-# divided by the static contact length.  The maximum for one relaxation time lies at kappa V of
-# order 1.  M is proportional to 1/kappa: a hard roller with a short contact has little rolling
-# resistance.
+# ``alpha`` is the instantaneous modulus divided by the long-time modulus, ``kappa`` the radius R
+# divided by the contact length at rest.  V is in units of R/T_epsilon, with the retardation time
+# T_epsilon, and the moment M in units of the load times R.  The maximum lies near kappa V = 1.  For
+# a given material M is proportional to 1/kappa: a hard roller with a short contact has little
+# rolling resistance.
 for alpha in (1.5, 3.0, 11.0, 81.5):
     top = vr.resistance_extrema(vr.Scene(alpha=alpha, kappa=10.0, mu=0.3))
     print(

@@ -43,5 +43,6 @@ figure.legend(
 )
 
 # %%
-# The cylinder moves to the right.  The pressure centre is shifted to the leading edge, because the
-# material there has not relaxed yet; its moment about the axis is the rolling resistance.
+# The cylinder moves to the right.  The material at the leading edge has not relaxed yet, so the
+# pressure is higher there, and its centre is ahead of the axis.  The moment of the pressure about
+# the axis is the rolling resistance moment.

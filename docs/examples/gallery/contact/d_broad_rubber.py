@@ -2,8 +2,8 @@
 A rubber with many relaxation times
 ===================================
 
-Real rubbers relax over many decades of time.  Each isolated relaxation time gives rolling
-resistance a maximum; many adjacent ones give a plateau.
+Real rubbers relax over many decades of time.  If the relaxation times are decades apart, the
+rolling resistance has a maximum for each of them.  If they are close together, it has a plateau.
 """
 
 import matplotlib.pyplot as plt
@@ -53,10 +53,12 @@ panels[0, 1].legend(frameon=False, fontsize="small")
 
 # %%
 # All four materials have the same long-time and the same instantaneous modulus.  lambda is the
-# contact length divided by its static value, epsilon the shift ahead of the axis.
+# contact length divided by that at rest, epsilon the shift of the contact ahead of the axis, in
+# half contact lengths.
 #
-# Stresses of the material with ten relaxation times over ten decades, at four speeds and half the
-# critical creepage, divided by the largest static pressure:
+# The next figure shows the stresses of the material with ten relaxation times over ten decades, at
+# four speeds.  The creepage is half of that at which full slip begins.  The stresses are divided by
+# the largest pressure at rest:
 scene = vr.Scene(
     material=materials["10 modes, 10 decades"], kappa=1.0, mu=1.0
 )

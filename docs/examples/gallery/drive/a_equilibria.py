@@ -2,9 +2,10 @@
 Terminal speeds on a slope
 ==========================
 
-The slope exerts the force sin(slope) times the weight.  The roller settles at the speed at which
-rolling resistance has the same size.  Beyond each maximum of rolling resistance there is a second,
-unstable steady speed: from there the roller slows down to the first, or accelerates without limit.
+Gravity pulls a roller down the slope with the force sin(slope) times the weight.  The roller
+settles at the speed at which the rolling resistance is equal to this force.  Above the speed of
+each maximum of the rolling resistance there is a second, unstable steady speed.  A slightly slower
+roller slows down to the stable speed below it, and a slightly faster one accelerates.
 """
 
 import matplotlib.pyplot as plt
@@ -65,9 +66,9 @@ figure.suptitle(
 )
 
 # %%
-# For one roller, in SI units.  The theory is quasistatic: it holds up to 20 % of the shear wave
-# speed of the rubber, sqrt(G/density).  The last two steady speeds exceed that speed: the theory
-# does not apply.
+# The same for one roller in SI units.  The theory neglects inertia of the rubber, and holds up to
+# 20 % of the shear wave speed of the rubber, sqrt(G/density), with the shear modulus G.  The last
+# two steady speeds are above the shear wave speed, so the theory does not apply to them.
 roller = vr.presets.RUBBER_CYLINDER
 s = roller.steady(slope=np.radians(0.3))
 share = roller.validity(s.V).quasistatic.value

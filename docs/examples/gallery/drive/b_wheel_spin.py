@@ -4,7 +4,7 @@ A start with wheel spin
 
 The torque of a motor rises linearly.  If it exceeds (1 + j) mu P R, with the load P, the radius R,
 the friction mu and the moment of inertia j m R^2, the whole contact slips and the wheel spins.
-When the torque is reduced, the stick zone forms again.  Full slip is grey.
+When the torque is reduced, the stick zone forms again.  The times of full slip are grey.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,9 @@
 Braked through V = 0
 ====================
 
-A torque against the motion slows the cylinder down and reverses it.  The speed V and the angular
-velocity omega pass through zero with a kink.  The creep force Q jumps, because the stick zone forms
-again at the new leading edge.
+A torque against the motion slows the cylinder down and then drives it backwards.  Where the speed V
+and the angular velocity omega pass through zero, their curves have a kink.  The creep force Q jumps
+there, because the trailing edge becomes the leading edge, where the stick zone forms again.
 """
 
 import matplotlib.pyplot as plt

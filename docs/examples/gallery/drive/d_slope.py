@@ -19,9 +19,9 @@ node, saddle = s.V
 plane = np.array([-0.5, 2.0]) * saddle
 
 # %%
-# The separatrix contains, for each omega, the V whose motion ends at the unstable speed.  It is
-# found by bisection: after 30 times the slowest time constant of the unstable speed a motion is
-# clearly on one side.
+# The separatrix is found like this.  For each omega the code searches the V between motions that
+# settle and motions that accelerate, by bisection.  After 30 times the slowest time constant of the
+# unstable speed it is clear which of both a motion does.
 across = np.linspace(*plane, 81)
 rate = s.eigenvalues[1].real.max() * scene.gamma * np.cos(slope)
 # V + j omega hardly changes while all of the contact slips

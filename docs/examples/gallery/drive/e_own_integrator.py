@@ -2,9 +2,10 @@
 The law in your own integrator
 ==============================
 
-A roller is towed by a spring.  It oscillates behind the tractor until the force of the spring
-equals the rolling resistance.  ``vr.law`` binds the contact law to a scene: a call takes
-microseconds, and gives the slopes that an implicit method needs.
+A tractor tows a roller by a spring.  The roller oscillates behind the tractor until the force of
+the spring equals the rolling resistance.  viscoroll does not compute such a system.  But ``vr.law``
+gives the creep force and the rolling resistance of the roller, with their derivatives, so that a
+general integrator, here Radau of SciPy, can compute it.
 """
 
 import matplotlib.pyplot as plt
@@ -68,5 +69,5 @@ bottom.legend(frameon=False)
 print(f"{found.nfev} calls of the law, {found.njev} of its slopes")
 
 # %%
-# The horizontal line is the rolling resistance at the speed of the tractor.  The same law is
-# available in numba (``law.jitted``) and C (``law.address``): :doc:`/howto/law`.
+# The horizontal line is the rolling resistance at the speed of the tractor.  The law can also be
+# called from functions that numba compiles and from C: :doc:`/howto/law`.

@@ -49,6 +49,7 @@ axes.legend(frameon=False)
 print(f"v = {found['v'][-1]:.6f} m/s after 3 s")
 
 # %%
-# ``Roller`` takes its own steps between those of the other program.  ``--model ContactElement``
-# exports the contact alone: from the speed v, the angular velocity omega and the load it computes
-# force and torque with their slopes, for a mechanism that contains the cylinder.
+# This FMU contains the whole roller and computes its motion.  If the other program itself computes
+# the motion of the cylinder, as a part of a mechanism, export the contact alone by
+# ``--model ContactElement``.  From the speed v, the angular velocity omega and the load it computes
+# force and torque on the cylinder, with their derivatives.

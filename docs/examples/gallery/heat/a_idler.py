@@ -2,9 +2,10 @@
 A cold conveyor idler warms
 ===========================
 
-A rubber idler starts at the temperature of its surroundings, and its losses warm it.  From -20 °C
-the stiff rubber dissipates little at first.  When it is warm enough its losses rise, and it warms
-rapidly.  Each curve ends at a stable equilibrium of the loss and the heat given off.
+A rubber idler starts at the temperature of its surroundings, and its losses warm it.  The figure
+shows three ambient temperatures.  At -20 °C the rubber is stiff and dissipates little at first.
+When it is warm enough, its losses rise, and it warms rapidly.  In the end the loss is equal to the
+heat given off, and the temperature stays constant.
 """
 
 import matplotlib.pyplot as plt

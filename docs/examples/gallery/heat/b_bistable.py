@@ -2,10 +2,11 @@
 A roller with two temperatures
 ==============================
 
-A stiff rubber in the cold dissipates little and stays cold.  Once it is warm enough it dissipates
-much and stays warm.  Between these two equilibria lies an unstable one.  A branch of stable
-equilibria ends where it meets the unstable branch.  So the temperature has a hysteresis over speed:
-it jumps up where the cold branch ends, and down where the warm branch ends.
+A stiff rubber in the cold dissipates little and stays cold.  A warm one dissipates much and stays
+warm.  So there are speeds at which the same roller may run at a low or at a high temperature;
+between these two temperatures lies a third one, which is unstable.  If the speed rises slowly, the
+cold roller suddenly becomes warm at a certain speed.  If the speed then falls, the roller becomes
+cold again only at a lower speed (hysteresis).
 """
 
 import matplotlib.pyplot as plt

@@ -3,9 +3,9 @@ The load-speed curve of a wheel
 ===============================
 
 A wheel with a cover of polyurethane, 15 mm thick and 40 mm wide, may not become hotter than 70 °C.
-The curve is the highest allowed speed at each load.  The wheel starts at the temperature of its
-surroundings, and its losses warm it.  Manufacturers of wheels state such a curve, or one point of
-it.
+The curves show the highest allowed speed at each load, for three ambient temperatures.  The wheel
+starts at the temperature of its surroundings, and its losses warm it.  Manufacturers of wheels
+state such a curve, or one point of it.
 """
 
 import matplotlib.pyplot as plt

@@ -3,8 +3,8 @@ From a DMA curve to a Prony series
 ==================================
 
 A dynamic mechanical analysis (DMA) measures storage and loss modulus over frequency.
-``fit_prony`` fits as few relaxation times as the requested misfit needs, and reports what the data
-do not determine.
+``fit_prony`` fits a Prony series to the data, with the fewest relaxation times for which the misfit
+is at most 1 %.  Its report also says what the data do not determine.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,10 @@
 Rolling resistance at three temperatures
 ========================================
 
-Temperature multiplies all relaxation times of a rubber by one factor a_T (here by the equation of
-Williams, Landel and Ferry).  The curve of rolling resistance keeps its shape and shifts along the
-speed axis: to lower speeds at low temperature, to higher speeds at high temperature.
+If the temperature changes, all relaxation times of a rubber are multiplied by one factor a_T (here
+by the equation of Williams, Landel and Ferry).  The curve of rolling resistance over the logarithm
+of the speed keeps its shape and is shifted: to lower speeds if it is colder, to higher speeds if it
+is warmer.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Rubber on steel
 ===============
 
-Only the rubber deforms and dissipates energy.  At the same load the contact is shorter than that
-of rubber on rubber, and rolling resistance is smaller.
+If a rubber roller rolls on steel, only the rubber deforms and dissipates energy.  At the same load
+the contact is shorter than that of rubber on rubber, and rolling resistance is smaller.
 """
 
 import matplotlib.pyplot as plt
@@ -53,6 +53,6 @@ axes.set(
 axes.legend(frameon=False, fontsize="small")
 
 # %%
-# Does the theory hold for the pair?  Dundurs' constant measures the influence of shear on the
-# pressure; for rubber on steel it is close to 0.
+# The theory assumes that shear does not change the pressure.  This is so if Dundurs' constant is 0.
+# For rubber on steel it is close to 0, since rubber is nearly incompressible:
 print(roller.validity(1.0).bodies.sentence)

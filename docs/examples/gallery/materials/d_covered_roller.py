@@ -45,8 +45,8 @@ right.set(
 right.legend(frameon=False, title="cover", loc="lower left")
 
 # %%
-# An incompressible cover is stretched under the contact: a freely rolling covered roller travels
-# further than ``omega R``.  The creepage of free rolling is ``delta_0``.
+# Rubber is nearly incompressible, so its surface is stretched under the pressure.  Therefore a
+# covered roller travels faster than ``omega R``.  ``delta_0`` is its creepage without traction:
 for thickness in (10e-3, 5e-3, 2.5e-3):
     covered = roller.replace(material=replace(rubber, thickness=thickness))
     c = covered.contact(1.0, delta=0.0)

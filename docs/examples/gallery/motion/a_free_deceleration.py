@@ -48,6 +48,7 @@ print(
 )
 
 # %%
-# A motion uses the contact of steady rolling at each instant (quasi-steady assumption).  Does this
-# hold?  Yes, down to some centimetres per second, where only a short distance remains:
+# ``roll`` uses the contact of steady rolling at each instant (quasi-steady assumption).  Is this
+# accurate enough?  Yes, down to some centimetres per second.  From there the roller rolls only a
+# short distance:
 print(m.validity().steady.sentence)

@@ -2,9 +2,10 @@
 The example of the paper
 ========================
 
-Sect. 5 of the paper has three motions of a soft, slow cylinder; its Fig. 5 shows V and omega.
-The figure is the exact solution of Eq. (22) of the paper.  A real cylinder would move differently:
-at 9 mm/s the quasi-steady assumption is violated (:doc:`/validity_measured`).
+Sect. 5 of the paper by Zobova and Goryacheva has three motions of a soft, slow cylinder; its Fig. 5
+shows V and omega.  The figure here shows the exact solution of Eq. (22) of the paper for them.  A
+real cylinder would move differently: at 9 mm/s the quasi-steady assumption is violated
+(:doc:`/validity_measured`).
 """
 
 import matplotlib.pyplot as plt
@@ -42,9 +43,10 @@ axes.set_title(
 axes.legend(frameon=False)
 
 # %%
-# The contact during the first motion (Fig. 6): after the onset of stick the stick zone ``beta``
-# grows within some 1e-4 T_epsilon, and the creepage ``delta`` falls to nearly 0.  Circles mark the
-# times of Fig. 7.
+# The next figure shows the contact during the first motion (Fig. 6 of the paper).  After full slip
+# has ended, the stick zone ``beta`` (divided by the contact length) grows within some 1e-4
+# T_epsilon, with the retardation time T_epsilon, and the creepage ``delta`` falls to nearly 0.
+# Circles mark the times of Fig. 7 of the paper.
 onset = vr.roll(scene, 1.5, 0.5, t).onset_time
 t = np.unique(np.concatenate([t, onset * np.linspace(0.9, 1.3, 401)]))
 m = vr.roll(scene, 1.5, 0.5, t)

@@ -2,9 +2,10 @@
 Phase portrait
 ==============
 
-V is the speed of the axis and omega the angular velocity.  Every motion has two parts.  In full
-slip (grey) friction equalises the speeds of rim and axis, and V + j omega hardly changes.  Then the
-motion approaches one common curve, the slow manifold (black), and follows it towards rest.
+V is the speed of the axis and omega the angular velocity, both dimensionless.  Each line is a
+motion. In full slip (grey) friction equalises the speeds of rim and axis, and V + j omega hardly
+changes (j is the moment of inertia divided by m R^2).  Then all motions approach one common curve,
+the slow manifold (black), which is nearly free rolling, and follow it towards rest.
 """
 
 import matplotlib.pyplot as plt
@@ -68,5 +69,5 @@ right.set(xlim=(-2.0, 2.0), ylim=(-room, room))
 right.set_ylabel(r"$(\omega T_\varepsilon - V T_\varepsilon/R)\times 10^3$")
 
 # %%
-# White is partial slip.  The right panel shows the difference omega - V, enlarged a thousand times,
-# because the band of partial slip is only some thousandths of V wide.
+# In the white area the contact slips partially.  This area is only some thousandths of V wide, so
+# the right panel shows the difference omega - V, enlarged a thousand times.

@@ -2,10 +2,11 @@
 Validity of the quasi-steady assumption
 =======================================
 
-A motion uses the law of steady rolling at each instant.  If the speed changes slowly, the next
-term of the rolling moment is known: M = M(V) + N(V) V'.  The term N V' acts as an added mass.  Its
-ratio to the mass, the unsteadiness gamma N/(1 + j), is about the relative error of V.  It is large
-at low speeds.  Long relaxation times do not make it large.
+``roll`` uses the rolling resistance moment M(V) of steady rolling at each instant.  If the speed V
+changes slowly, the moment is in fact M(V) + N(V) V', with V' = dV/dt.  The term N V' acts as an
+added mass.  Its ratio to the inertia of the cylinder, the unsteadiness gamma N/(1 + j), is about
+the relative error of V (gamma and j: :doc:`/validity`).  It is large at low speeds.  Long
+relaxation times do not make it large.
 """
 
 import matplotlib.pyplot as plt
@@ -77,7 +78,7 @@ print(roller.validity(1.0).steady.sentence)
 print(cold.validity(1.0).steady.sentence)
 
 # %%
-# Left: the dots mark the speeds at which the error of V reaches 1 % and 10 %.  A rubber with
-# relaxation times a thousand times longer has the same limits.  Right: the effect of N on free
-# rolling from 1 m/s down to an error of 10 %; the two curves nearly coincide.  For lower speeds see
-# :doc:`/validity`.
+# Left: the dots mark the speeds at which the error of V reaches 1 % and 10 %.  For a rubber with
+# relaxation times a thousand times longer they are the same.  Right: free rolling from 1 m/s,
+# computed without N and with it, down to the speed at which the error is 10 %; the two curves
+# nearly coincide. For lower speeds see :doc:`/validity_low_speed`.

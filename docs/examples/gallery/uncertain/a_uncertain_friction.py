@@ -2,8 +2,9 @@
 Ten thousand motions with uncertain friction
 ============================================
 
-The coefficient of friction has a standard deviation of ten per cent.  How long does the roller
-slide?  Friction and initial speed of each motion are drawn at random, and each is integrated.
+The coefficient of friction has a standard deviation of ten per cent.  How long does a roller slide
+that is launched without rotation?  Ten thousand motions are computed, each with a friction and an
+initial speed drawn at random.
 """
 
 import matplotlib.pyplot as plt
@@ -33,5 +34,5 @@ right.set(xlabel="coefficient of friction", ylabel="speed after 10 s, m/s")
 print(np.quantile(e.onset_time, [0.05, 0.5, 0.95]))
 
 # %%
-# Friction determines the duration of sliding, but not the speed afterwards: V + j omega does not
-# change while sliding.
+# Friction determines how long the roller slides, but not its speed afterwards.  The reason: while
+# it slides, V + j omega hardly changes (j is the moment of inertia divided by m R^2).

@@ -2,8 +2,9 @@
 Sensitivity to uncertain inputs
 ===============================
 
-Sobol indices divide the variance of a result among the uncertain inputs.  A run file,
-:doc:`like this one </sensitivity>`, names the inputs and their distributions.
+Which uncertain input causes most of the scatter of a result?  Sobol indices divide the variance of
+the result among the inputs.  A run file names the inputs and their distributions
+(:doc:`/sensitivity`).
 """
 
 from pathlib import Path

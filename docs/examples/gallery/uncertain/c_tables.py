@@ -2,9 +2,9 @@
 The law in C, Octave and on grids
 =================================
 
-The contact law of a material is written to a file once.  Here the file is a C header, and a netCDF
-file for Octave.  Both have the accuracy of the package.  A grid, a table for programs that can only
-interpolate, is less accurate.
+Programs in other languages can evaluate the contact law from a file.  Here this file is a header
+for C, and a netCDF file for Octave.  Both give the same results as viscoroll, to rounding.  For
+programs that can only interpolate in tables there is a grid, which is less accurate.
 """
 
 import shutil
@@ -24,7 +24,7 @@ exact = vr.contact(scene, 3.0, omega=3.01, slopes=True)
 print(f"{exact.Q:.15f} {exact.M:.15f} {exact.dQ_dV:.12f}")
 
 # %%
-# In C: the table and its evaluator are one header, ``rubber.h``.
+# In C: the header ``rubber.h`` contains the law of the rubber and the functions to evaluate it.
 vr.tables.export(law, folder / "rubber.h")
 (folder / "state.c").write_text(
     """
@@ -73,7 +73,8 @@ if shutil.which("octave-cli"):
     print(result.stdout)
 
 # %%
-# A grid for look-up blocks, and the error of linear interpolation in it.
+# A grid is a table of the creep force over speed and creepage.  The figure shows the error of
+# linear interpolation in it.
 V = vr.tables.spread(1e-2, 1e4, 60, "log")
 grid = vr.tables.build(scene, V, delta=np.linspace(-0.03, 0.03, 61))
 speeds = np.geomspace(1e-2, 1e4, 400)
