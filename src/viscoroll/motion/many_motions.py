@@ -240,6 +240,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
             found.rest[left],
         ) = info.T
 
+    # with the added mass and a material each the law is that of one motion
     mapped = found.status.max(initial=-1) >= 0
     block = (
         _MAPPED_BLOCK
@@ -282,6 +283,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
         Returns (record of the law or laws; whether the bodies may take unequal parts of M).
         """
         if several is not None:
+            # one material for all motions is index 0
             index = np.minimum(index, len(several) - 1)
         if unsteady:
             material: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]

@@ -265,6 +265,7 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
                 "long_name": f"times of the given {name}",
                 "units": result.scale.unit("t"),
             }
+            # of one axis if all motions have the same corners, which then are a coordinate
             times = _shared(value.times, 1)
             value = value.values
             dims = "motion", f"{key}_time" if times.ndim == 1 else f"{key}_corner"
