@@ -415,6 +415,7 @@ def evaluate_law(
 
             unsteady_loop(material.unsteady_record, parts[0], parts[2], N)
         else:
+            # the state has no table of N: its zeta, and N by the modes at that zeta
             zeta = np.empty((1, stop - start))
             loop(
                 laws,

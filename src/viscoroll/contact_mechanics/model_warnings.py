@@ -342,6 +342,7 @@ def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
     if one_time and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
         return True
     lower_ends, slow = _slow_starts(material, gamma, j)
+    # the entry at or below u; below the table the first one
     return slow[max(bisect(lower_ends, u) - 1, 0)]
 
 

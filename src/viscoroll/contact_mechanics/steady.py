@@ -256,6 +256,7 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     side = math.copysign(1.0, omega)
     if side * contacts.mu + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
+    # the limit V -> 0 of full slip: the slowest node, at a creepage far beyond the onset
     slowest = np.exp2(speed_nodes(law)[:1]) / contacts.kappa
     rows = state_rows(contacts, slowest, 1.0 / slowest)
     spinning = States.of(loads, np.array([n]), np.array([side]), rows)
@@ -291,6 +292,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     free = problem.free_rolling(nodes)
     low, _, high = free.slips
     off = np.abs(problem.slip(free) - 0.5 * (low + high))
+    # nodes at an onset count as partial slip in spite of rounding
     stuck = off <= 0.5 * (high - low) * (1.0 + 1e-9)
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     fine = (
@@ -322,6 +324,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     law, kappa, mu = problem.contacts
+    # crossings of both directions are found; those of V > 0 belong to this frame
     _, sign, u = find_crossings(law, of_V, np.array([kappa * at_rest]))
     positions = [np.empty(0)]
     slips = [np.empty(0)]
@@ -334,6 +337,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
             return problem.residual(np.full(part.size, x), limit * part)
 
         sides = np.array([1.0, -1.0])
+        # the slip at which Q = +-mu balances the axis; it is full slip if beyond the limit
         full = (rest - sides * mu) / problem.load_rows[0, 2]
         partial_slip = limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
         slips += [partial_slip, full[sides * full > limit]]
@@ -363,6 +367,9 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     (of_V, of_omega) = gains.sum(axis=0)
     (force_V, force_omega) = gains[0]
     for _ in range(_NEWTON_STEPS if V.size else 0):
+        # slopes of Q, M_half_space and M_cylinder over V at fixed omega, then over omega.  With
+        # omega = V + slip a slope over the slip is that over omega, one over V at fixed slip is the
+        # sum
         (a, one, other), (b, one_omega, other_omega) = slopes_at_fixed_omega(rows)
         sum_slip = one_omega + other_omega - of_omega
         sum_V = one + other + (one_omega + other_omega) - of_V - of_omega
@@ -390,6 +397,7 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     new = (np.abs(np.diff(V)) > _SAME_STATE * V[1:]) | (
         np.abs(np.diff(delta)) > _SAME_STATE * np.abs(delta[1:])
     )
+    # the first state is new; without states there is none to mark
     return rows[:, order[np.concatenate([[True], new]).astype(bool)[: order.size]]]
 
 

@@ -262,6 +262,7 @@ class Shear(NamedTuple):
         on_axis = 1.0 + self.half_space + 2.0 * self.half_space_excess * used
         on_spin = 1.0 - self.cylinder - 2.0 * self.cylinder_excess * used
         if law.cover is None:
+            # M/V of both at rest, power 0 of the first row
             half_space, cylinder = law.coefficients[0, 0, 2:4, None] * np.ones(Q.size)
             return on_axis, on_spin, half_space, cylinder
         limit, free = creep_at_rest(law)
@@ -299,6 +300,7 @@ def creep_at_rest(law: LawTable) -> tuple[float, float]:
     """
     if law.cover is None:
         return 1.0, 0.0
+    # 2 kappa delta_star/mu and f of base and cylinder, power 0 of the first row
     limit, half_space, cylinder = law.cover.creep[:3, 0, 0]
     return float(limit), float(half_space + cylinder)
 
@@ -315,6 +317,7 @@ def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
         return creep
     names = "delta_minus", "delta_plus", "delta_star", "delta_0"
     low, high, star, free = contacts.fields(V, 0.0, *names)
+    # d = 1 and -1 at the onsets: their mean is delta_0 + c delta_star
     return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
 
@@ -521,6 +524,7 @@ def loads_without_omega(
         left = wanted - (Q - axis * half_space + spin * cylinder)
         low = np.where(left > 0.0, delta, low)
         high = np.where(left > 0.0, high, delta)
+    # left is rounding, but where no creepage between the onsets balances: what friction lacks
     return Q + left, half_space, cylinder
 
 
