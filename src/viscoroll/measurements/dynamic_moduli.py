@@ -254,6 +254,7 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     for n, centre in enumerate(x):
         distance = np.abs(x - centre)
         near = distance <= max(_WINDOW, np.partition(distance, nearest)[nearest])
+        # log is ln E' of the line at the point itself
         slope, log = (
             np.polyfit(x[near] - centre, y[near], 1)
             if np.ptp(x[near]) > _APART

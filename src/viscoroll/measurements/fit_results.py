@@ -478,6 +478,7 @@ class SeriesFit(Result):
         lam = contact(
             cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam"
         ).lam
+        # times of a material at another temperature are a_T = T_ref/T_ref of the fit times as long
         seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return assess_measured_band(seen, {"the material": self.measured})
 
@@ -490,6 +491,7 @@ class SeriesFit(Result):
         NaN.
         """
         points = np.asarray(x, np.float64)
+        # the spectrum reads omega or t of the data, not the moduli
         data = self.data._replace(**{self.data._fields[0]: points.ravel()})
         return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 

@@ -451,6 +451,7 @@ def fit_at_strain(
         return fit_prony(sets[0], **options)
     strain = math.exp(np.mean([math.log(each.mean_strain) for each in sets]))
     for _ in range(_FITS):
+        # moduli at the strain, the material of them, and the strain of its contact at that speed
         fit = fit_prony(_at_strain(sets, strain), **options)
         body = fit.material(cylinder.material.nu)
         own = {

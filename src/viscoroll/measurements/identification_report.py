@@ -102,6 +102,7 @@ def _noise(fit: Any) -> Iterator[str]:
                 f"or {_INADEQUATE}"
             )
             continue
+        # allowed is 3/sqrt(points)
         points = 9.0 / allowed**2
         yield (
             f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most "

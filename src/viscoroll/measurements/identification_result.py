@@ -388,6 +388,7 @@ class Identification(Result):
             predictions = [predict(point) for point in (inside if len(inside) else [u])]
             low, high = np.nanquantile(predictions, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
         else:
+            # slopes() has its axes in reverse order: here (unknowns, quantities, *shape of points)
             J = problem.slopes(predict, u, range(u.size)).T
             half = factor * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
             low = value - half

@@ -175,6 +175,7 @@ class Problem:
         sigma = []
         size = 0
         for record_name, record in records.items():
+            # a plan has the predictions at the start for data
             values = (
                 vars(record) if record.measured else self.predicted(record, self.start, record_name)
             )
@@ -309,6 +310,7 @@ class Problem:
             up = u.copy()
             down = u.copy()
             up[i] = min(u[i] + step, max(self.high[i], u[i]))
+            # to both sides, or where the upper end of the range cuts the step, downwards too
             if step == _STEP or up[i] < u[i] + step:
                 down[i] = max(u[i] - step, min(self.low[i], u[i]))
             columns.append((function(up) - function(down)) / (up[i] - down[i]))
@@ -459,6 +461,7 @@ class Problem:
         r = self.residuals(u)
         for column in self.columns:
             record = self.records[column.record]
+            # lexsort sorts by its last key first: the first coordinate
             part = r[column.at][
                 np.lexsort(
                     [np.ravel(getattr(record, name)) for name in reversed(record.COORDINATES)]

@@ -346,6 +346,8 @@ def master_curve(
     )
     base = None if reference is None else check_celsius("reference", reference)
     coldest = float(temperatures[0])
+    # relative to the coldest curve, as the reference may not be known yet; at the end to the
+    # reference
     if vertical_shift is not None:
         b_T = np.array(
             [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
@@ -375,6 +377,7 @@ def master_curve(
         found = ShiftFactors(
             temperature=tuple(temperatures.tolist()), a_T=tuple(np.exp(logs).tolist()), T0=base
         )
+        # relative to the coldest curve so far, now to the reference, which may lie between curves
         factor = np.exp(logs) / (found(base) if logs.size > 1 else 1.0)
     shifts = Shifts(
         temperature=tuple(temperatures.tolist()),
@@ -578,6 +581,7 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
         method="bounded",
         options={"xatol": 1e-9},
     ).x
+    # worse than the best step of the search, or NaN, as beside the last overlap
     if not cost(found := _mismatch(step, cold, warm)) < cost(squares[best]):
         step = steps[best]
         found = squares[best]

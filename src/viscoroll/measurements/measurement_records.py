@@ -125,6 +125,7 @@ class Record:
             )
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
+        # by ``vars``, as the class is frozen
         vars(self).update(whole, labels=labels, sigma=sigmas)
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)

@@ -334,6 +334,7 @@ class Likelihood:
         """
         axes = self.axes(delta_chi2)
         within = np.concatenate([axes[i].within for i in which])[:, which]
+        # rows from the least singular value on: along these the points differ least
         for v in np.linalg.svd(within - within.mean(axis=0))[2][::-1]:
             exact = v / v[np.argmax(np.abs(v))]
             rounded = (np.round(exact * parts) / parts for parts in _PARTS)
@@ -350,6 +351,7 @@ class Likelihood:
         (unknowns,), rounded to 0.01, that of largest absolute value 1, and those of unknowns
         outside of ``which`` 0.
         """
+        # columns by rising eigenvalue: that of the least variance first
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
 
@@ -452,6 +454,7 @@ class ProfileWalk:
         limits = []
         pieces = False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
+            # the corner of the ranges at which the combination is least, then largest
             reach = self.distance(np.where(self.powers > 0.0, near, far))
             d, last = self.find_end(reach, self.best)
             for _ in range(_BRANCHES):
@@ -526,7 +529,9 @@ class ProfileWalk:
             fa = f
             d = a + math.copysign(min(step, abs(reach - a)), reach)
             f = excess(d)
-            rise = max(f - fa, -0.35 * f)  # at most three times the step
+            # the next step goes 5 % beyond the zero of the line through both points, but is at most
+            # three times and at least 0.3 times this one
+            rise = max(f - fa, -0.35 * f)
             step = min(max(-1.05 * f / rise, 0.3) * step, _LONGEST_STEP)
         end = brentq(excess, a, d, xtol=_CLOSE * min(self.sd, 1.0))
         return end, found[min(found, key=lambda d: abs(d - end))]
@@ -586,6 +591,9 @@ class ProfileWalk:
             return []
         (r, J) = problem.weighted(u)
         others = [i for i in problem.active if i not in (*at, follows)]
+        # slopes while the combination stays: ``follows`` changes by -powers/powers[follows]; then
+        # the part of the slope of each bound that the free unknowns cannot make, along which chi2
+        # falls by the square of the residuals' component
         J = J - np.outer(J[:, follows], self.powers / self.powers[follows])
         own = J[:, at] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, at], rcond=None)[0]
         gains = (r @ own) ** 2 / np.maximum((own**2).sum(axis=0), 1e-300)
