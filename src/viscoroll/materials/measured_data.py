@@ -643,6 +643,7 @@ class Measured:
             return np.full(rates.shape, np.nan)
         at, error = np.transpose(self.M_error)
         inside = (rates >= low) & (rates <= high)
+        # ``low`` in place of rates outside, whose logarithm may be infinite
         found = np.interp(np.log(np.where(inside, rates, low)), np.log(at), error)
         return np.where(inside, found, np.inf)
 
