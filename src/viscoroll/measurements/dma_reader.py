@@ -356,6 +356,7 @@ def read_dma(
         refuse_unread_temperatures(table, others)
         temperature = temperatures_of_lines(table)
         notes += ["temperatures are those of lines above the rows"] * (temperature is not None)
+    # those of the tests, not of the master curve, whose reference no column states
     elif temperature is not None and reduced and np.ptp(temperature) > SAME_TEMPERATURE:
         temperature = None
         others[columns_of_quantity.pop("temperature")[0].heading] = (
@@ -368,9 +369,11 @@ def read_dma(
     sources = [columns_of_quantity[name][0].name for name in pair]
     if any(UNITS[name] == "1/Pa" for name in sources):
         with np.errstate(all="ignore"):  # what is not finite is refused
+            # compliance J' - i J'' and modulus E' + i E'' are inverse
             square = storage**2 + loss**2
             storage = storage / square
             loss = loss / square
+    # the decades of a modulus are below 10, and those of a low frequency negative
     logs = omega.min() < 0.0 or storage.max() < SOFTEST
     advice = "are these logarithms? write log before their headings" if logs else "remove the row"
     for name, values in {
@@ -519,6 +522,7 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     """
     omega = record.omega
     n = record.omega.size
+    # a single row may be one of a sweep that the user cut
     if n > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
         problem = (
             f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "
