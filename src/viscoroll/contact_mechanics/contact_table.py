@@ -299,7 +299,7 @@ def evaluate_contact(
         arrays = {name: np.asarray(value) for name, value in arrays.items()}
         shape = broadcast_shape(**arrays)
         refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * float(V)) <= fastest:
+    elif not abs(scene.kappa * float(V)) <= fastest:  # true of NaN too
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
         raise ParameterError(
@@ -312,6 +312,7 @@ def evaluate_contact(
     if isinstance(material, Prony | Bodies):
         allowed = "left out for many materials in one call: compute it for one of them, material[i]"
         refuse_fields(names, (UNSTEADY,), allowed)
+        # the index of the material stands in the place of alpha
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))

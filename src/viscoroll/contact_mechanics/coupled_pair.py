@@ -415,6 +415,7 @@ class CoupledPair(NamedTuple):
             shares = {"base": 1.0 - material.share, "cylinder": material.share}
             parts = [(side, share, *material.body(side)) for side, share in shares.items()]
         else:
+            # like half-spaces: any nu will do, and 0.5 is that of bodies without coupling
             parts = [(side, 0.5, material, 0.5, None) for side in ("base", "cylinder")]
         made = [
             CoupledBody(
@@ -426,7 +427,7 @@ class CoupledPair(NamedTuple):
                 T=tuple(series.T.tolist()),
             )
             for side, share, series, nu, thickness in parts
-            if share > 0.0
+            if share > 0.0  # a rigid body has no part of the compliance
         ]
         return cls(tuple(made))
 

@@ -169,7 +169,7 @@ def _without_outliers(edges: Floats) -> Floats:
     from scipy.signal import savgol_filter
 
     middle, low, high = edges.T
-    place = (middle - low) / (high - low)
+    place = (middle - low) / (high - low)  # 0 and 1 at the onsets
     rows = np.arange(place.size)
     for neighbours, far in _OUTLIERS:
         good = np.abs(place - median_filter(place, neighbours, mode="nearest")) <= far
@@ -335,7 +335,9 @@ def measure_errors(
         draw = draws[n]
         row = CoupledRow(pair, u, rows.mu, elements)
         low, high = row.onsets()
+        # edges of the rows between the limits of u = 0 and u infinite: the middle creepage
         middle = np.interp(math.log(u), np.log(rows.u), rows.edges[1:-1, 0])
+        # three within 2.5 % of the distance of the onsets, where the two splines meet
         near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
         creeps = np.concatenate([near, low + (high - low) * draw[3:]])
         exact = _fields(row.states(creeps), creeps, u, rows.mu)

@@ -199,6 +199,8 @@ class Curve:
         longest = _SHORT * np.maximum(2.0 * distance, _CLIMB)
         W = np.zeros(u.shape)
         for J, T in zip(*self.modes, strict=True):
+            # distance of the time T at the start, in half contact lengths at rest, which the motion
+            # may be too short for; and the part of the creep that the standstill was too short for
             L = np.minimum(2.0 * u * T, longest)
             fresh = np.exp(-rested / T)
             W += (
@@ -443,7 +445,7 @@ class FreeRolling:
                 )
                 for row, value in zip(out, values, strict=True):
                     row[part] = value
-        return [row.reshape(self.u.shape)[()] for row in out]
+        return [row.reshape(self.u.shape)[()] for row in out]  # [()]: a number without axes
 
     @cached_property
     def unsteadiness(self) -> Any:
@@ -492,14 +494,17 @@ class FreeRolling:
             """
             end = np.empty(u.size)
             below = np.empty(u.size, bool)
+            # the unsteadiness is g |N|: limit_speed takes one level of |N|, so a call for each g
             levels, group = np.unique(g, return_inverse=True)
             for n, value in enumerate(levels):
                 part = group == n if levels.size > 1 else slice(None)
                 end[part], below[part] = curve.limit_speed(u[part], level / value)
+            # where the part is empty, u stands for its end, so that time and distance are 0
             start = np.where(below, end, u)
             left = curve.distance(np.where(below, end, u))
             time = np.where(start > 0.0, curve.time(u) - curve.time(start), np.inf)
             distance = np.where(below, curve.distance(u) - left, 0.0)
+            # times and distances of the curve are those of g = 1, and in inverse proportion to g
             return [end, np.where(below, time, 0.0) / g, distance / g, left / g]
 
         end, time, distance, left = self._evaluate(evaluate, [0.0, np.inf, np.inf, 0.0])

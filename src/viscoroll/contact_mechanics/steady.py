@@ -145,6 +145,7 @@ class _ScanProblem(NamedTuple):
             gains on omega must not add to 0.
         Raises ParameterError of a cover, where the gains leave Q open.
         """
+        # loads at omega = V; slip times the gains on omega is added to them
         force, torque = self.loads_at(free.V, free.V)
         of_force, of_torque = self.load_rows[:, 2]
         law = self.contacts.law
@@ -163,6 +164,7 @@ class _ScanProblem(NamedTuple):
             cylinder = free.M_cylinder + by_cylinder
         else:
             return (free.M - (force + torque)) / (of_force + of_torque)
+        # either balance gives the slip; that of the larger gain loses fewer digits
         if abs(of_force) > abs(of_torque):
             return (half_space - force - Q) / of_force
         return (cylinder + Q - torque) / of_torque
@@ -207,11 +209,14 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
     parts = [States.none()]
     for n in range(loads.mu.size):
+        # columns of the rows of force and torque: at rest, gain on V, gain on omega
         at_rest = np.array([[loads.force[n]], [loads.torque[n]]])
         contacts = Contacts(law, loads.kappa[n], loads.mu[n])
         for sign in (1.0, -1.0):
+            # a motion towards -x is the mirror image: its loads have the other sign, its gains stay
             problem = _ScanProblem(contacts, np.hstack([sign * at_rest, gained]))
             is_layer = law.cover is not None or law.coupled is not None
+            # of half-spaces slip follows from the speed unless the gains on omega cancel
             by_speed = is_layer or problem.load_rows[:, 2].sum()
             x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
             rows = _polish(problem, np.exp2(x) / contacts.kappa, slip)

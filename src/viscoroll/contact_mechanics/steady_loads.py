@@ -138,6 +138,7 @@ def loads_of(
         arrays["V"] = check_array("V", V)
         refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
     shape = broadcast_shape(**arrays)
+    # the rows are in the order of the fields of Loads; slope counts for the shape alone before
     arrays["force"] = push + arrays.pop("slope")
     rows = broadcast_rows(arrays.values(), shape)
     return Loads(shape, Gains(*of_force, *of_torque), given, *rows)
@@ -365,11 +366,12 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     for n, kappa in enumerate(loads.kappa):
         contacts = Contacts(law, kappa, loads.mu[n])
         for sign in (1.0, -1.0):
+            # a motion towards -x is the mirror image, under loads of the other sign
             one = loads._replace(force=sign * loads.force[n], torque=sign * loads.torque[n])
             zeros = find_zeros(partial(torque_left, contacts, one), nodes, noise[n])
             load.append(np.full(zeros.size, n))
             signs.append(np.full(zeros.size, sign))
-            speeds.append(np.exp2(zeros) / kappa)
+            speeds.append(np.exp2(zeros) / kappa)  # zeros are log2(kappa V)
     return np.concatenate(load), np.concatenate(signs), np.concatenate(speeds)
 
 
@@ -521,6 +523,7 @@ def loads_without_omega(
         Q = contacts.mu * fields["Q_over_mu"]
         half_space = fields["M_half_space"] / contacts.kappa
         cylinder = fields["M_cylinder"] / contacts.kappa
+        # falls with the creepage, as Q grows
         left = wanted - (Q - axis * half_space + spin * cylinder)
         low = np.where(left > 0.0, delta, low)
         high = np.where(left > 0.0, high, delta)

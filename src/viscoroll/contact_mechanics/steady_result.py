@@ -455,6 +455,7 @@ def pack_result(
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
     force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
     torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
+    # with V given: the balance of the axis, and that of the cylinder
     if loads.given == "torque":
         force = M_half_space - Q
     elif loads.given == "force":
@@ -472,6 +473,7 @@ def pack_result(
             unit = scale[name]
             per_load = isinstance(unit, np.ndarray)
             found[name] = found[name] * (unit[..., np.newaxis] if per_load else unit)
+    # the unit of all three, 1/s of a cylinder; one for each load needs an axis for the equilibria
     fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
     eigenvalues.real[..., 0] = fast

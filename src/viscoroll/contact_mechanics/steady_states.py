@@ -150,6 +150,7 @@ class States(NamedTuple):
         )
         rows[list(signed)] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
+        # of the frame where V > 0: a mirror image has the same eigenvalues
         rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers, loads.gains, loads.j[load])
         return cls(load, rows)
 

@@ -115,6 +115,7 @@ class _States:
         self.sign = np.where(self.V < 0.0, -1.0, 1.0)
         if creep_is_omega:
             self.slip = given - self.V
+            # at V = 0 infinite, with the sign of the slip, and 0/0 without slip, which is 0
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 delta = self.slip / np.abs(self.V) * self.sign
                 self.delta = np.where(self.slip == 0.0, 0.0, delta)
@@ -124,6 +125,7 @@ class _States:
         self.u = self.kappa * np.abs(self.V)
         with np.errstate(over="ignore"):
             self.creep = 2.0 * self.kappa * self.delta
+        # states of one speed and friction share the onsets of full slip, which are solved once
         _, self.row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
 
     def groups(self) -> list[Any]:

@@ -285,7 +285,7 @@ def _describe_free(free: FreeRolling) -> str:
     fine = free.reach(0.1 * STEADY_LIMIT)
     start = free.start()
     text += f"the coasting distance is {whole:.4g}{length}; the error of V is below "
-    if fine.time:
+    if fine.time:  # 0 where the error is above 1 % at the start already
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
     if fine.speed:
         reached = (

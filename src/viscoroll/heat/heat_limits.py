@@ -147,6 +147,7 @@ def heat_limit(
         rows = _limits(roller, allowed, arrays)
     else:
         refuse_arrays(roller, scene, ("alpha",))
+        # one state at a time: the load changes the contact length, and with it the law of a cover
         limits = np.vectorize(
             lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
             otypes=[float, float, bool],
@@ -427,6 +428,8 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
         check_number(name, x, unit=SI, above=0.0) for name, x in given.items()
     )
     biot = film * thickness / conductivity
+    # a slab with even sources, cooled on one side: the rise of the hottest point and the mean,
+    # both divided by that of the surface
     above = 100.0 * ((1.0 + 0.5 * biot) / (1.0 + biot / 3.0) - 1.0)
     return Assumption(
         biot <= BIOT_LIMIT,

@@ -323,6 +323,7 @@ class HeatStates:
         else:
             parts, (rolling, slip) = self._driven(n, factors, V)
             loss = np.where(np.isnan(parts[2]), np.nan, rolling + slip)
+            # in the order of MOMENTS, divided by P R
             moments = np.array([parts[0] + parts[1], parts[0], parts[1]])
         found = dict(zip(MOMENTS, moments * (load * self.R[n]), strict=True))
         found |= {"C_rr": moments[0], "loss": loss, "loss_slip": slip}
@@ -438,12 +439,13 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
         )
         raise described_error("roller", f"of {call} has no Material", allowed)
     bodies = (pair.cylinder, slip_share), (pair.half_space, 1.0 - slip_share)
+    # all loss in rolling is that of the body that relaxes, if there is one alone
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
     if not found:
         raise described_error(
             "material", "does not relax, and rolls without loss", "one that relaxes"
         )
-    if pair.like:
+    if pair.like:  # each has half of both losses, at one temperature
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
         allowed = (

@@ -626,6 +626,7 @@ def pair_temperatures(
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
+        # index of the pair, kappa, mu, V and delta
         state = [index, own, 1.0, speed * warm.T_ref / scale["R"], 0.0]
         return (
             load

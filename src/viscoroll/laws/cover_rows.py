@@ -638,6 +638,7 @@ def _fit_end(
         log_terms: number of terms times ln y, as in :func:`basis`.
         Returns (11, points), complex where ``at`` is.
         """
+        # lam to the moments by one degree; f, g, lam_Q and epsilon_Q, which need shear, by another
         parts = (values[: _FREE.start], _END_DEGREE), (values[_FREE.start :], _STRAIN_DEGREE)
         return np.concatenate(
             [

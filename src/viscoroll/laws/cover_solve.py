@@ -379,6 +379,7 @@ def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
     alpha = np.minimum(a * z, LARGE_ALPHA)
     beta = b * z
     n = np.arange(N + 1)[:, None]
+    # I_n/I_0 is exp(-n^2/(2 x)) for large x: the factor is 1 unless alpha was limited
     ratio = ive(n, alpha) / ive(0, alpha) * np.exp(0.5 * n * n * (1.0 / alpha - 1.0 / (a * z)))
     root = np.sqrt(ratio[1])
     k = k0e(beta) / k1e(beta)

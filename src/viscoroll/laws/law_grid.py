@@ -381,6 +381,7 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
         raise ParameterError("alpha", alpha, f"in [{low:.15g}, {high:.15g}], the range of {path}")
     if low == high:
         return table.squeeze("alpha")
+    # by the number of nodes, the last for all larger numbers
     method: Any = _METHODS[min(table.sizes["alpha"], len(_METHODS)) - 1]
     return table.assign_coords(alpha=np.log(table["alpha"])).interp(
         alpha=np.log(alpha), method=method

@@ -236,6 +236,7 @@ def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
     """
     from ..kernels.law.material_series import Series
 
+    # [..., j, i]: creep modes by relaxation modes, as modes.gap, which is a_i - b_j
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
     e = np.sqrt(modes.E / modes.a)
     t = np.sqrt(modes.J / modes.b)

@@ -117,6 +117,8 @@ class _FunctionsOfW:
         for _ in range(_NEWTON_STEPS):
             (value,), (slope,) = self.rows.read(self.powers[[which]], w)
             whole = 1.0 + (1 + which) * value
+            # for both factors the relative change of factor(whole) with ln w is slope/whole, since
+            # the root halves the factor 2 of 2 h/z
             w += (x * factor(whole) - w) / (1.0 - slope / whole)
         values, slopes = self.rows.read(self.powers, w)
         whole = 1.0 + (1 + which) * values[which]
@@ -316,6 +318,7 @@ def law_table(
             material = material.total if material.total.E.size else 1.0
     if coefficients is not None:
         return make_table(material, coefficients)
+    # threads wait for the one that makes a table, in place of making it again
     with _lock:
         return _made(material)
 

@@ -298,7 +298,7 @@ class FromPrograms:
         resting = rates == 0.0
         rest = _long_time_shear(strengths, G0, G_inf, strengths[resting])
         strengths = strengths[~resting]
-        times = 1.0 / rates[~resting]
+        times = 1.0 / rates[~resting]  # beta = 0 is the long-time modulus, no mode
         terms = None if K is None else check_pairs("K", K, "beta", rates, above=-math.inf)[0]
         if terms is not None:
             if terms[resting].any():
@@ -310,6 +310,7 @@ class FromPrograms:
         if bulk is not None:
             bulk = check_number("bulk", bulk, unit=SI, above=0.0)
             nu = _poisson(rest, bulk)
+            # a bulk modulus that does not relax
             terms = np.zeros_like(strengths) if terms is None else terms
         return cls._from_moduli(
             rest, check_poisson(nu), G=strengths, tau=times, K=terms, more=more, K_inf=bulk

@@ -251,10 +251,12 @@ class Pair:
                 "make the other body rigid (E = inf)"
             )
             raise described_error("E or nu of a body", found, allowed)
+        # both in the unit of time of the pair
         series, other_series = (
             body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other)
         )
         part = float(np.max(parts))
+        # beside a rigid body the layer has all of the compliance
         more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}
         if other.thickness is not None and part < 1.0:
             more["other_thickness"] = np.broadcast_to(

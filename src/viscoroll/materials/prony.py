@@ -357,6 +357,7 @@ class Prony(OneOrMany):
         if not self.shape:
             strengths, rates = (getattr(self.modes, name) for name in names)
         else:
+            # a material with fewer modes than others keeps strength 0 and rate 1 behind its own
             strengths = np.zeros(self._strengths.shape)
             rates = np.ones(self._strengths.shape)
             for rows, modes, _ in self.blocks(np.arange(len(self))):

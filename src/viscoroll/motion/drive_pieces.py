@@ -408,7 +408,7 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     Raises as :meth:`_Sampled.values`.
     """
     merged: list[Piece] = []
-    rest = pieces[::-1]
+    rest = pieces[::-1]  # a stack: the next piece is its last
     while rest:
         piece = rest.pop()
         if merged and rest:
@@ -418,6 +418,7 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
                 before.stop - before.start, after.stop - after.start
             ):
                 corner = _intersection(before, after, piece)
+                # the tolerances are those of the largest value before each piece
                 left, _ = sampled.fit(before.start, corner, before.so_far)
                 right, _ = sampled.fit(corner, after.stop, piece.so_far)
                 if left and right:

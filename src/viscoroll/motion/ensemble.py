@@ -544,6 +544,7 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     }
     if scale.si:
         for name, row in rows.items():
+            # a unit for each motion is a column; in place, as the rows may fill the memory
             np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
         times = {name: value * scale[name] for name, value in times.items()}
     times = {name: np.broadcast_to(value, shape) for name, value in times.items()}

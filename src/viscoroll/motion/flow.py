@@ -297,7 +297,7 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
     """
     new_map = FlowMap(
         parameters=parameters,
-        first=octave - flow_layout.OCTAVES,
+        first=octave - flow_layout.OCTAVES,  # exponent of the lowest octave
         table=np.zeros(flow_layout.SIZE),
         errors=(math.inf,) * 3,
         problem="",

@@ -325,6 +325,7 @@ class SlowManifold(NamedTuple):
         V, delta = (
             value(powers, end[..., None] + span[..., None] * _GAUSS[0]) for powers in self.speeds
         )
+        # the logarithm falls at a constant rate, so that dt = -d(logarithm)/rate
         near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
         direct = [
             (_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))

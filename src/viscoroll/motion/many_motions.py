@@ -175,11 +175,11 @@ def _solve_by_flow_map(
         path=not {"x", "angle"}.isdisjoint(rows), loss=not set(LOSSES).isdisjoint(rows)
     )
     about |= {"flow_error": error, "flow_problem": chosen.problem}
-    if not error <= rtol:
+    if not error <= rtol:  # true of NaN too
         return None
     wanted = tuple((STATES + LOSSES).index(name) for name in rows)
     motions = Motions(
-        gamma=scene.gamma * unit * unit,
+        gamma=scene.gamma * unit * unit,  # an acceleration times a time squared
         rest=threshold * unit,
         V0=V0,
         omega0=omega0,
@@ -216,6 +216,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 
         start, stop: index of the first motion of the block, and of the one after the last.
         """
+        # a status below 0: not looked up
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:
             return

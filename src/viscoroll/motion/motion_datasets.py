@@ -468,6 +468,7 @@ def ensemble_dataset(result: Any) -> Dataset:
     variables = _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:
         value = _shared(np.asarray(getattr(result.scene, name)))
+        # () where all motions have one value
         variables[name] = ("motion",)[: value.ndim], value, attributes(name)
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         variables[name] = "motion", result[name], column_attributes(name, si)

@@ -585,6 +585,7 @@ def roll(
     units = scale_of(roller)
     times = output_times(t, units)
     drive = Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V)
+    # plain floats, the common case, need no search for units
     if not UNLABELLED_TYPES.issuperset(map(type, (V0, omega0, *drive))):
         (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
     options = SolverOptions(
