@@ -667,6 +667,7 @@ class Cylinder(Methods):
         """Data of the bodies in SI units, from which validity and warnings are computed, a
         :class:`.BodyData`.
         """
+        # E to T_sigma may be arrays, of which no pair can be made: the shear modulus stands for it
         pair, G = (
             (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
         )

@@ -197,6 +197,7 @@ def points(
         if design == "latin":
             index = np.arange(start, stop, dtype=np.uint64)
             strata = [permuted(index, n, key) for key in _keys(seed, dimensions)]
+            # one point in each of n strata of each coordinate, at random within it
             drawn = (np.array(strata) + drawn) / n
     return np.clip(drawn, SMALLEST, LARGEST)
 

@@ -340,6 +340,7 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     """
     if type(value) is int and low <= value <= high:
         return value
+    # a bool is an int of Python, and a duration an integer of numpy
     if isinstance(value, bool | np.timedelta64) or not (
         isinstance(value, int | np.integer) and low <= value <= high
     ):

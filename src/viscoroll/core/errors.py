@@ -483,6 +483,7 @@ def _suggesting(function: Any) -> Any:
             return function(*arguments, **named)
         except TypeError as error:
             for name in named:
+                # the end of Python's own message, which from 3.13 on goes on with a suggestion
                 if str(error).endswith(f"unexpected keyword argument '{name}'"):
                     error.args = (
                         f"{error}{suggestion(name, inspect.signature(function).parameters)}",

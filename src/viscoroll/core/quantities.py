@@ -421,7 +421,7 @@ def _to_seconds(name: str, value: Any) -> Any:
     Raises ParameterError for a duration in months or years, whose length is not fixed, or without a
     unit.
     """
-    if isinstance(value, timedelta):
+    if isinstance(value, timedelta):  # that of pandas is one too, and has nanoseconds
         value = (
             value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)
         )
@@ -430,6 +430,7 @@ def _to_seconds(name: str, value: Any) -> Any:
     ):
         return None
     durations = np.asarray(value)
+    # generic: a number without a unit of time
     if np.datetime_data(durations.dtype)[0] in ("generic", "Y", "M"):
         raise ParameterError(
             name, f"{value!r:.60}", "a duration in weeks, days, hours, seconds or parts of them"

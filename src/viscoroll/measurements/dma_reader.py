@@ -209,9 +209,10 @@ def read_relaxation(
         each.heading: "not needed" for name in alike.keys() - {*used} for each in alike[name]
     }
     numbers = {name: agreeing_numbers(table, name, alike[name], others).values for name in used}
-    for name in used[: 1 + len(pair)]:
+    for name in used[: 1 + len(pair)]:  # all but the temperature
         holds = (numbers[name] > 0.0) & (numbers[name] < np.inf)
         table.require(holds, f"the {name} is not > 0 and finite: remove the row")
+    # a strain is in use only beside a stress
     relaxation = numbers[pair[0]] / numbers.get("strain", 1.0)
     refuse_repeats(table, "time", numbers["time"], relaxation)
     temperature = numbers.get("temperature")
@@ -490,6 +491,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     )
     if quantities & {"frequency", "reduced frequency"}:
         problem = "fewer than two columns were found of storage, loss, tan delta and modulus"
+        # without compliances first, then without moduli
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
             columns: dict[str, list[Column]] = {}
             unused = {}

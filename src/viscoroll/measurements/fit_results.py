@@ -101,7 +101,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     found = fit.admissible
     ends = ", ".join(
         f"+-{found.error[n]:.2%}"
-        for n in ((0, found.rate.size // 2, -1) if found.rate.size else ())
+        for n in ((0, found.rate.size // 2, -1) if found.rate.size else ())  # rates ascend
     )
     where = "at the lowest, middle and highest speed inside the measured band"
     yield "accuracy", f"M: {ends or 'no speed'}, {where}, by all spectra that meet the data as well"
@@ -415,6 +415,7 @@ class SeriesFit(Result):
         E = self.E
         measured = self.measured
         if self.mode == "shear":
+            # checked here, before Material refuses it, so that E is not made with a wrong one
             factor = 2.0 * (1.0 + check_poisson(nu))
             E *= factor
             measured = replace(

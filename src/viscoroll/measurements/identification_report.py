@@ -166,6 +166,7 @@ def _products(fit: Any) -> str:
     )
     if not found:
         return "the data determine no product of their powers"
+    # of those that stand first in the sentence: near is False of the sure ones
     limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
     verb = "are" if " and " in (sure or near) else "is"
     text = f"only {sure or near} {verb} {'bounded within the ranges' if limited else 'determined'}"

@@ -135,6 +135,7 @@ class Identification(Result):
             name for i, name in enumerate(self.values) if i not in problem.active
         )
         self.correlations = self._likelihood.correlations
+        # d value/d coordinate, by which standard deviations of coordinates become those of values
         slopes = np.array(
             [unknown.slope(self.values[unknown.name]) for unknown in problem.unknowns]
         )

@@ -565,6 +565,7 @@ class Coastdown(Record):
             data = R * np.asarray(self.omega)
         if data is None and name == "V0" and self.x is not None:
             some = slice(0, max(3, np.size(self.t) // 10))
+            # [:1]: the slope, before the constant
             data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
         if data is None:
             raise ParameterError(self.label(name), None, "a number: the data do not determine it")

@@ -149,6 +149,8 @@ class Likelihood:
         self.points = float((1.0 / repeats).sum())
         within = np.diag(12.0 / (problem.high - problem.low) ** 2)
         self._cov = np.linalg.inv(J.T @ J + within)
+        # the estimate has the weights of _cov, while the variance of each point is larger by its
+        # repeats: the covariance of a linear estimate with other weights than the best ones
         self.cov = self._cov @ ((J.T * repeats) @ J + within) @ self._cov
         self.sd = np.sqrt(np.diag(self.cov))
         self.correlations = self.cov / np.outer(self.sd, self.sd)
@@ -161,6 +163,7 @@ class Likelihood:
         self._profiles = cache(
             lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile()
         )
+        # coordinates and powers are given as bytes, which a cache can compare
         self.minimize = cache(
             lambda u, powers: problem.minimize(
                 np.frombuffer(u), np.frombuffer(powers), _TOLERANCE, _EVALUATIONS
@@ -209,7 +212,7 @@ class Likelihood:
         for i, profile in found.items():
             along = profile.within[:, i]
             self.ends += [profile.within[np.argmin(along)], profile.within[np.argmax(along)]]
-        self._profiles.cache_clear()
+        self._profiles.cache_clear()  # they were made without the starts in ends
         return self.axes(delta_chi2)
 
     def undetermined(self, delta_chi2: float) -> list[int]:
@@ -228,12 +231,14 @@ class Likelihood:
         wide = []
         for i, profile in self.axes(delta_chi2).items():
             bounds = self.problem.low[i], self.problem.high[i]
+            # an open side reaches to the end of the range
             low, high = (
                 bound if end is None else end
                 for end, bound in zip(profile.ends, bounds, strict=True)
             )
             if high - low > min(_WIDE, 0.5 * (bounds[1] - bounds[0])):
                 wide.append(i)
+        # the wide ones themselves too, whose correlation with themselves is 1
         return [
             i for i in self.problem.active if (np.abs(self.correlations[i, wide]) > _TOGETHER).any()
         ]
@@ -301,6 +306,8 @@ class Likelihood:
                 for unknown, p in zip(self.problem.unknowns, powers.tolist(), strict=True)
                 if p
             }
+            # low and high are factors of this value: the combination is ln(product) but for a
+            # constant, to first order where a coordinate is no logarithm
             value = math.prod(abs(values[name]) ** p for name, p in exponents.items())
             found.append(
                 Product(
@@ -559,6 +566,7 @@ class ProfileWalk:
             (u, _BEYOND[:1]) for u in self.likelihood.ends
         ]
         for u, parts in starts:
+            # own too, if it lies beyond d, on the side of reach
             own = self.distance(u)
             for target in [d + part * (reach - d) for part in parts] + [own] * (
                 (own - d) * (reach - d) > 0.0

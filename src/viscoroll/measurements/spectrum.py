@@ -246,12 +246,14 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     count = spectrum.tau.size
     if not count:
         return spectrum
+    # unknowns: logarithms of E, of count strengths, of count times
     start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
     low = start - _RANGE
     high = start + _RANGE
     low[0] = np.log(_least_modulus(data))
     high[0] = np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
+    # only the times are kept: strengths on given times have one best fit, which may leave modes out
     return on_times(
         data, np.exp(_minimize(data, start, low=low, high=high, calls=calls)[1 + count :])
     )
@@ -707,6 +709,7 @@ def _pulled(
     found = best
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
+        # counted in fourth roots of the sum, so that one range of the logarithm serves all data
         weight = 10.0**middle * allowed**0.25
         tried = problem.solve(weight * pull, weight * (pull @ best + sign))
         if problem.cost(tried) <= allowed:

@@ -283,7 +283,7 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
         return distributed.Client(
             n_workers=thread_count(threads),
             threads_per_worker=1,
-            dashboard_address=":0",
+            dashboard_address=":0",  # any free port: a fixed one may be taken
             silence_logs=logging.CRITICAL,
         )
 

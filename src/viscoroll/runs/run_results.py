@@ -398,6 +398,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
             path,
             f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command repairs it",
         )
+    # chunks=None: arrays of numpy, read at their use, without dask
     return RunResults(root, xr.open_zarr(root, chunks=None))
 
 

@@ -126,6 +126,7 @@ class Rollers(Cylinder):
             mu=self.mu,
             j=self.j,
         )
+        # gamma = P T_ref^2/(m R) of T_ref = T: over T it is 1/s, as the class counts time
         return scene.replace(gamma=scene.gamma / T)
 
     @cached_property

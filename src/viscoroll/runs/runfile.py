@@ -417,7 +417,7 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
         options = SolverOptions(
             rtol=settings.rtol,
             rest=settings.rest,
-            max_steps=1,
+            max_steps=1,  # nothing is integrated: the problem is made, which checks all
             resolve=None,
             unsteady=settings.unsteady,
             rested=settings.rested,
@@ -460,5 +460,6 @@ def _digest(
         for columns in inputs.joint.values()
         for name, values in columns.items()
     ]
+    # deterministic: keys in sorted order
     described = [kept, times.tolist(), sections, materials, samples]
     return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()

@@ -354,7 +354,7 @@ def table(indices: Dataset) -> DataFrame:
             .reset_index()
         )
         frame.insert(0, "quantity", name)
-        over = ["t"] * ("t" in frame)
+        over = ["t"] * ("t" in frame)  # a quantity of one number per motion has no such column
         tables.append(
             frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable")
         )

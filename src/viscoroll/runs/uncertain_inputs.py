@@ -258,6 +258,7 @@ def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
         return part
     numbers: list[Any] = []
     for member in part:
+        # the number before, itself perhaps that of an input
         numbers.append(numbers[-1] if numbers and member == SAME else _fill_in(member, values))
     return numbers
 
@@ -479,6 +480,7 @@ class _Reader:
         if missing := [shape for shape in shapes if shape not in parameters]:
             raise self.fault(number, f"{name} also needs {', '.join(missing)}")
         frozen = law(**{key: float(value) for key, value in parameters.items()})
+        # scipy returns NaN for parameters out of range, and raises nothing
         if not np.isfinite(frozen.ppf(0.5)):
             raise self.fault(number, f"scipy.stats.{name} does not allow these parameters")
         return frozen
@@ -556,6 +558,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
         import_extra("pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
+        # of all ways to read the heading the first with a unit
         given = next((each.unit for each in readings(column) if each.unit), "")
         advice = f"name the column '{column} [{unit}]', or with the unit that it has"
     elif path.suffix == ".nc":
