@@ -144,6 +144,7 @@ def tabulate(
     def solve(n: int, _: int) -> None:
         edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
 
+    # two passes: the states of a row need its middle creepage, which is smoothed over all rows
     run_blocks(begin, len(work), 1, progress="coupled table: kernels" if progress else None)
     edges[: len(work), 0] = _without_outliers(edges[: len(work), :3])
     run_blocks(solve, len(work), 1, progress="coupled table: states" if progress else None)

@@ -257,6 +257,7 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     law = contacts.law
     if law.cover is not None or law.coupled is not None or not (gain and total):
         return []
+    # the sum of both balances without M; then that of the axis must hold with Q = +-mu
     omega = -total / gain
     side = math.copysign(1.0, omega)
     if side * contacts.mu + loads.force[n] + gains.force_omega * omega != 0.0:
@@ -299,6 +300,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     off = np.abs(problem.slip(free) - 0.5 * (low + high))
     # nodes at an onset count as partial slip in spite of rounding
     stuck = off <= 0.5 * (high - low) * (1.0 + 1e-9)
+    # intervals with an end in partial slip, where the balance changes fast, get further nodes
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     fine = (
         nodes[within, None]
@@ -306,6 +308,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     )
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
     free = problem.free_rolling(nodes)
+    # the size of the terms of the balance of the axis, of which its rounding is a fraction
     speeds = [np.ones_like(free.V), free.V, free.V + problem.slip(free)]
     terms = problem.contacts.mu + free.M_half_space + np.abs(problem.load_rows[0]) @ np.abs(speeds)
     found = find_zeros(
@@ -338,6 +341,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
         limit = free.slips[2, 0]
         rest = free.M_half_space - problem.loads_at(free.V, free.V)[0]  # Q + gain slip
 
+        # defaults keep x and limit of this turn
         def residual(part: Floats, x: float = x, limit: float = limit) -> Floats:
             return problem.residual(np.full(part.size, x), limit * part)
 
@@ -496,7 +500,7 @@ def steady(
     slope = plain["slope"]
     level = roller
     (roller, scene, scale) = resolve_model(roller, "steady", slope=slope)
-    if type(scene.alpha) is not float:
+    if type(scene.alpha) is not float:  # a float, the common case, is no array
         refuse_arrays(level, scene, ("alpha",), slope=slope)
     force = make_dimensionless("force", plain["force"], scale)
     torque = make_dimensionless("torque", plain["torque"], scale)

@@ -269,6 +269,8 @@ class Shear(NamedTuple):
         limit, free = creep_at_rest(law)
         part = np.where(used < 1.0, used, 0.0)
         still = np.zeros(Q.size)
+        # at rest |Q|/mu = 1 - (1 - |creep|/delta_star)^2; limit is 2 kappa delta_star/mu, and free
+        # 2 kappa times the creepage of free rolling
         creep = 0.5 * limit * mu / kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
         delta = creep_beyond_free(self.contacts, still, creep) + 0.5 * free / kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"

@@ -525,6 +525,7 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
     texts["stubs.h"] = _stubs(source, texts[f"fmi{version}FunctionTypes.h"], version)
     texts["model.h"] = constants
     law = (folder / "law.h").read_text(encoding="utf-8")
+    # sorted: glob has no order of its own
     token = hashlib.sha256(
         "".join((model, law, *(texts[name] for name in sorted(texts)))).encode()
     ).hexdigest()

@@ -548,6 +548,7 @@ def warming(
             )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])
+    # (states, times) each, in the order of y
     course, heat, off = np.split(np.concatenate(parts, axis=1), 3)
     if (hot := course.max(initial=-np.inf)) > states.curve.high:
         sentence = (
@@ -557,6 +558,7 @@ def warming(
         raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
     rows = states.fields(np.repeat(every, times.size), course.ravel(), V_t)
+    # a contact at V that is a_T times slower to relax is as one at a_T V at the reference
     warn_of_contact(roller, V_t * rows["a_T"])
     values = {name: rows[name] for name in ("temperature", "V", "C_rr", "M", "loss")}
     values |= {"heat": heat, "given_off": off}

@@ -385,6 +385,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
         )
     for key, lists in forms.items():
         columns = {
+            # numbers of one mode may be arrays (n,), of n materials: modes become the last axis
             column: np.stack(np.broadcast_arrays(*value), axis=-1)
             if isinstance(value, list) and value
             else value

@@ -346,6 +346,7 @@ def read_dma(
     mode, pair, columns_of_quantity = _choose_columns(table, found, others)
     mode, assumed = source.mode(mode)
     notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1) + assumed
+    # read at the end, since a strain that cannot be read is left out, while others are refused
     strains = columns_of_quantity.pop("strain", [])
     numbers = {
         quantity: agreeing_numbers(table, quantity, alike, others)

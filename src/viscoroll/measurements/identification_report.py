@@ -144,6 +144,7 @@ def _limits(fit: Any) -> Iterator[str]:
     yield from _phases(fit)
     loose = {*fit.does_not_act, *fit.undetermined}
     names = list(fit.values)
+    # below the diagonal: each pair once
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
         if not {names[i], names[k]} <= loose:
             yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"

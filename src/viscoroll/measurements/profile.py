@@ -204,6 +204,7 @@ class Likelihood:
         coordinate, in ascending order of the indices; unknowns that do not act are not in it, so
         that it is {} where none acts.
         """
+        # a row of the unit matrix: the combination of one coordinate alone
         found = {
             i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active
         }

@@ -275,6 +275,7 @@ class _Layout:
         if heads:
             for line in lines[: heads[0]]:
                 if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
+                    # with empty cells between them numbers are headings of groups of columns
                     if all(line.cells):
                         raise self.fault(
                             line, "has numbers above the headings: keep one table of the file"

@@ -204,6 +204,7 @@ def _dataset(
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims
     data = {}
+    # of a free motion loads and works are 0 or follow from the states; an ensemble has what it kept
     for name in ROWS if acts else STATES:
         if (values := result[name]) is not None:
             if name == "regime":

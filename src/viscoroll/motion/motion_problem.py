@@ -200,6 +200,7 @@ def make_problem(
         )
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
+            # rtol and the threshold of rest stay; the third is the step limit
             limits = (*limits[:2], limits[2] + functions.corners)
         if rest is not None:
             refuse_rest(rest, functions)

@@ -135,6 +135,7 @@ def sobol_indices(
     data = {}
     for name, values in outcomes.items():
         over = ("t",) * QUANTITIES[name].over_time
+        # differences below it are those of the integrator, not of the inputs
         noise = (
             settings.rtol
             * np.abs(values, where=np.isfinite(values), out=np.zeros_like(values)).max()
