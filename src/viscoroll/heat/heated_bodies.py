@@ -375,6 +375,7 @@ class HeatStates:
         a_T, root_b = factors
         # over R/T_ref at the temperature, whose T_ref is a_T times that of the reference
         speed = np.abs(V) * self.roller.T_ref * a_T / self.R[n]
+        # one for each state, also where V is a number
         sign = np.where(V < 0.0, -1.0, 1.0) + np.zeros(n.size)
         loads: Any = self.loads
         vectors = {name: getattr(loads, name)[n] for name in ("force", "torque", "mu", "j")}

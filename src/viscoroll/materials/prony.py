@@ -540,6 +540,7 @@ def _check_modes(
     if wide.any():
         ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
         raise ParameterError(names[1], ends, f"within a factor of {LARGEST_TIME_RATIO:g}")
+    # modes without strength are last (sort_modes); those that no material has are cut off
     return values[..., :most], each[..., :most]
 
 

@@ -260,6 +260,7 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
             if np.ptp(x[near]) > _APART
             else (math.nan, 0.0)
         )
+        # E'' = pi/2 dE'/d ln(omega), with dE' = E' d ln(E')
         allowed = 0.5 * math.pi * slope * math.exp(log)
         ratio[n] = (
             curve.loss[n] / allowed

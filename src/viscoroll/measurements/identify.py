@@ -163,6 +163,7 @@ def identify(
     problem = Problem(
         cylinder, unknowns, records=records, robust=check_bool("robust", robust), shifts=shifts
     )
+    # a standard deviation that is estimated needs one degree of freedom
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
         allowed = (

@@ -258,6 +258,7 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     allowed = f"{two}, or a dict, quantity -> unit"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
         raise ParameterError("units", f"{units!r:.60}", allowed)
+    # each of the two is for all quantities that are converted to the same unit
     of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
     pairs = (
         dict(units)

@@ -234,6 +234,7 @@ def load(path: str | PathLike[str]) -> Dataset:
 
     content = read_sealed(path, _MAX_BYTES, "table of viscoroll", "build it again")
     try:
+        # numbers as they are written: no fill values as NaN, no seconds as durations
         table = xr.load_dataset(
             io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False
         )
