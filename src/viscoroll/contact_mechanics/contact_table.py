@@ -426,6 +426,7 @@ def evaluate_law(
             )
             N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
+    # few states of one law: no blocks, threads and readers, which would take longer than the states
     if count <= states.TOGETHER and record:
         numbers = broadcast_rows(arrays, shape)
         numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)

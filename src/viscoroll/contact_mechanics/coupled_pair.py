@@ -524,6 +524,7 @@ class CoupledRow:
             coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
             for sign, out in zip((-1.0, 1.0), self._full, strict=True)
         ]
+        # kappa delta at the onset of full slip of negative and of positive sign
         self._ends = [onset for onset, _ in ends]
 
         # guesses that are the same for bodies that are swapped: the half length, column 9, and

@@ -194,6 +194,7 @@ class Parameters(Roller):
         if self.coupled is not None:
             check_bool("coupled", self.coupled)
         if isinstance(material, LawGrid | LawTable):
+            # as given, for replace(): the table of a grid holds at one kappa
             vars(self)["_given_law"] = material
         if isinstance(material, LawGrid):
             material = material.table(check_number("kappa", values["kappa"], above=0.0))

@@ -117,6 +117,7 @@ class LawGrid:
         rows = replace(
             self.rows, mu=self.most / self.load, u=u, edges=edges, fields=fields, fastest=u[-1]
         )
+        # the material is not known: alpha = 1 stands for it
         return coupled_table(1.0, rows)
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:

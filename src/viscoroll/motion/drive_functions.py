@@ -201,6 +201,7 @@ class DriveFunctions:
         # the pull of the slope, over the load P cos(slope), adds to the constant term of the force
         tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
         tilt[:, 0, 0] = self.tangent
+        # without a prescribed speed its name is "", and both are the function that is 0
         rate = differentiate(name, speed) if name else speed
         return pack_pieces(
             (force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end

@@ -558,7 +558,6 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
         import_extra("pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
-        # of all ways to read the heading the first with a unit
         given = next((each.unit for each in readings(column) if each.unit), "")
         advice = f"name the column '{column} [{unit}]', or with the unit that it has"
     elif path.suffix == ".nc":

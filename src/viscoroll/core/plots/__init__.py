@@ -447,6 +447,7 @@ def motion(data: Dataset) -> Figure:
         axes.set_ylabel("\n".join(variable_label(data[name]) for name in names))
         if len(names) > 1:
             small_legend(axes)
+    # of a single time an axis of length 1, as matplotlib warns of one without length
     grid[-1, 0].set(
         xlabel=variable_label(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0)
     )
