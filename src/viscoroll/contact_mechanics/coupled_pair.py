@@ -479,6 +479,9 @@ class CoupledProfile(NamedTuple):
 class CoupledRow:
     """States of a pair at one speed u = kappa |V|, as functions of the reduced creepage 2 kappa
     delta.  Its compiled kernels release the GIL.
+
+    pair, u, mu : the bodies, kappa |V|, and the coefficient of friction.
+    n : number of elements of the contact.
     """
 
     def __init__(self, pair: CoupledPair, u: float, mu: float, n: int = ELEMENTS) -> None:

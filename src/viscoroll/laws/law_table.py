@@ -383,6 +383,7 @@ def make_table(
         cover = cover or cover_rows(material)
         coefficients = cover.coefficients
         e0 = cover.e0
+        # M/V at rest, power 0 of the first row, of both bodies
         T_mean = float(cover.coefficients[0, 0, 2:4].sum())
     elif modes.a.size:
         refuse_distant_times(modes.b[0], modes.a[-1])

@@ -350,7 +350,9 @@ def _contradiction(meaning: Meaning, heading: str, overruling: Mapping[str, str]
         return (
             f"an angular frequency in {unit}: rename it {plain!r}, or give units={{{name!r}: ...}}"
         )
-    angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
+    # tan delta must not be in an angle and a phase angle must be, since pint converts the one to
+    # the other; None of other quantities
+    angle = {"1": False, "rad": True}.get(UNITS[name])
     return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
 
 
