@@ -30,6 +30,7 @@ def _read_modules(file: str) -> dict[str, str]:
     listed once.
     """
     with open(splitext(file)[0] + ".pyi", encoding="utf-8") as stub:
+        # lines as "from .scene import Scene as Scene": from, module, import, name
         return {
             name: module
             for _, module, _, name, *_ in (line.split() for line in stub if line.startswith("from"))

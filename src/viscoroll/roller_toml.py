@@ -180,12 +180,14 @@ def make_roller(
     given = dict(content.get("scene", {}))
     if (series := parse_series(path, "scene", given)) is not None:
         given["material"] = series
+        # by the name of the key in the file, which the error states
         check_one_given(
             alpha=given.get("alpha"), **{"creep" if "creep" in given else "prony": series}
         )
     given = {name: value for name, value in given.items() if name not in ("prony", "creep")}
     if "preset" in content:
         return preset(content["preset"]).replace(**given)
+    # they are optional in the section, since a preset has them
     for name in ("kappa", "mu"):
         if name not in given:
             raise ParameterError(name, None, "given", f"needs {name}")
@@ -208,6 +210,7 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
         name for name, given in content.items() if isinstance(given, dict) and error.name in given
     )
     default = next((name for name in SCHEMA if name in content), "")
+    # the section "" is the top level, where preset stands
     return section_error(
         path, "" if error.name in content else next(sections, default), error.name, str(error)
     )

@@ -450,6 +450,7 @@ class Cylinder(Methods):
             name: getattr(self, name)
             for name in (*_NUMBERS, "plane", "material", "base", "coupled")
         }
+        # the load as it was given: None where it is the weight, which follows the new m and g
         values["load"] = values.pop("pressed")
         if changes.get("material") is not None:
             values |= dict.fromkeys(_SLS)
@@ -607,6 +608,7 @@ class Cylinder(Methods):
         if law is not None and isinstance(law.material, Cover):
             self._refuse_other_load(law)
         if self._sls_parameters:
+            # alpha = T_epsilon/T_sigma; one out of range is refused by the scene
             slow, fast = (np.asarray(T, np.float64) for T in (self.T_epsilon, self.T_sigma))
             with np.errstate(all="ignore"):
                 law = (slow / fast)[()]
@@ -665,6 +667,7 @@ class Cylinder(Methods):
         """Data of the bodies in SI units, from which validity and warnings are computed, a
         :class:`.BodyData`.
         """
+        # E to T_sigma may be arrays, of which no pair can be made: the shear modulus stands for it
         pair, G = (
             (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
         )

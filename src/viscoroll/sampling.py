@@ -197,6 +197,7 @@ def points(
         if design == "latin":
             index = np.arange(start, stop, dtype=np.uint64)
             strata = [permuted(index, n, key) for key in _keys(seed, dimensions)]
+            # one point in each of n strata of each coordinate, at random within it
             drawn = (np.array(strata) + drawn) / n
     return np.clip(drawn, SMALLEST, LARGEST)
 
@@ -231,6 +232,7 @@ def permuted(index: Words, n: int, key: Words) -> Words:
     permutation.
     Returns the images, (k,), uint64, < n, a new array.
     """
+    # half of the bits of n - 1, rounded up: 4^half >= n
     half = max((int(n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)
     outside = np.flatnonzero(result >= n)
@@ -306,6 +308,8 @@ def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
     sequence = copy.copy(_sequence(seed, dimensions))
     drawn = np.empty((stop - start, dimensions))
     state = sequence._shift.copy()
+    # point k is the shift of the scrambling, to which without carry the direction number of each
+    # bit of the Gray code of k is added
     gray = start ^ (start >> 1)
     for bit in range(gray.bit_length()):
         if gray >> bit & 1:

@@ -76,6 +76,7 @@ def numbers(text: str) -> Any:
     import numpy as np
 
     members = [_numbers_of_member(member) for member in text.split(",")]
+    # hstack takes numbers and vectors side by side
     return members[0] if len(members) == 1 else np.hstack(members)
 
 
@@ -92,6 +93,7 @@ def _numbers_of_member(text: str) -> Any:
         low, *rest = text.split(":")
         if not rest:
             return float(low)
+        # without a spacing that of the library, linear; a second one is a TypeError of the call
         high, count, *spacing = rest
         return vr.tables.spread(float(low), float(high), int(count), *spacing)  # type: ignore[arg-type]
     except vr.ParameterError as error:
@@ -155,6 +157,7 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
     text = f"{' or '.join(suffixes)}{more}"
     return option(
         name,
+        # argparse would call the argument of -o by its letter
         dest="output" if name == "-o" else name[2:],
         metavar="FILE",
         type=path,
@@ -212,6 +215,7 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
                 dict(zip(np.ravel(variable.attrs["flag_values"]), meanings, strict=True))
             )
     if "equilibrium" in frame:  # a load with fewer equilibria than another has NaN in the rest
+        # the one column "V" or "V [m s-1]"
         frame = frame[np.isfinite(frame.filter(regex=r"^V( |$)")).all(axis=1)]
     if len(frame) == 1:
         frame = frame.drop(columns="state", errors="ignore")
@@ -232,6 +236,7 @@ def deliver(arguments: Namespace, data: Dataset, frame: DataFrame, heading: str)
     Raises FileError if the file cannot be written.
     """
     path = arguments.output
+    # of a path the suffix without its dot; .txt leads to the last case below, as "text" does
     suffix = arguments.format if path is None else path.suffix.lower()[1:]
     if suffix == "nc":
         write_dataset(data, path)
@@ -239,6 +244,7 @@ def deliver(arguments: Namespace, data: Dataset, frame: DataFrame, heading: str)
     if suffix == "csv":
         text = frame.to_csv(index=False, lineterminator="\n")
     elif suffix == "json":
+        # as objects, since a column of floats would keep NaN in place of None
         finite = frame.replace([float("inf"), -float("inf")], float("nan")).astype(object)
         text = (
             json.dumps(

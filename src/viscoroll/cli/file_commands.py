@@ -177,6 +177,7 @@ def fit(arguments: Namespace) -> int:
     from ..contact_mechanics import MISFIT_LIMIT
     from ..materials import material_as_toml
 
+    # NAME=UNIT,... becomes a dict, F,M a pair; without the option neither is used
     parts = (arguments.units or "").split(",")
     units: Any = dict(_named_heading(part) for part in parts) if "=" in parts[0] else tuple(parts)
     record = vr.read_dma(
@@ -197,6 +198,7 @@ def fit(arguments: Namespace) -> int:
     path = arguments.output
     fault = result._fault
     if fault and not arguments.force:
+        # a misfit above 5 % is a fault with any --misfit
         advice = "raise --misfit, or " * (result.largest_misfit <= MISFIT_LIMIT)
         refusal = f"; {path} is not written: {advice}write it with --force" if path else ""
         print(f"viscoroll: {fault}{refusal}", file=sys.stderr)
@@ -272,7 +274,7 @@ def identify(arguments: Namespace) -> None:
     )
     print(result)
     path = arguments.output
-    suffix = arguments.output and arguments.output.suffix.lower()
+    suffix = arguments.output and arguments.output.suffix.lower()  # None without a path
     if suffix == ".nc":
         write_dataset(result.to_xarray(), path)
     elif path is not None:
@@ -470,11 +472,13 @@ def validate(arguments: Namespace) -> int:
     from ..tables.law_dataset import Report, check_table
 
     about = {"file": arguments.file, "points": arguments.n}
+    # seed 0, which is none of those by which the stated errors were measured
     report = Report(tuple(check_table(vr.tables.load(arguments.file), arguments.n, 0)), about)
     print(report)
     return not report.ok
 
 
+# a dict, since both lists have .nc and .cdf
 @command("export", FILE, output(*dict.fromkeys(_LAW + _GRID)))
 def export(arguments: Namespace) -> None:
     """Write the results of a run, or a table, in another format, and print the size of the new
@@ -531,6 +535,7 @@ def fmu(arguments: Namespace) -> None:
 
     path = arguments.file
     content = read_sections(path)
+    # only a TOML file has sections; a netCDF is a law or a material
     source = vr.load_law(path) if not content and is_law(path) else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):

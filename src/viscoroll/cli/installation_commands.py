@@ -145,6 +145,7 @@ def doctor(arguments: Namespace) -> int:
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()
     names = [
+        # the name before the version, as of "numpy>=2.0"
         re.split(r"[^\w-]", requirement)[0]
         for requirement in required
         if "extra ==" not in requirement
@@ -247,5 +248,6 @@ def _fault_of_cache(folder: Path) -> str:
         refuse_writable_by_others(folder)
     except PermissionError as error:
         return f"; it is NOT USED: {error.strerror}"
+    # a folder that is missing would be made in the nearest one above it
     existing = next((path for path in (folder, *folder.parents) if path.exists()), folder)
     return "" if os.access(existing, os.W_OK) else "; it CANNOT be written"

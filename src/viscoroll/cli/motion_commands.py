@@ -88,6 +88,7 @@ def contact(arguments: Namespace) -> None:
 
     V = arguments.V
     creep = arguments.omega if arguments.delta is None else arguments.delta
+    # all pairs, speeds along the first axis, so that the states of the first speed come first
     V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
     show(
         arguments,
@@ -127,6 +128,7 @@ def stress(arguments: Namespace) -> None:
     state = roller.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
     ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POSITIONS)
+    # ahead is towards -x for V < 0: mirrored, and reversed so that x ascends
     x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
     show(arguments, roller.stress(x, **speeds))
 
@@ -221,10 +223,12 @@ def steady(arguments: Namespace) -> None:
     loads = {name: load for name, load in loads.items() if load is not None}
     slope = {"slope": loads.pop("slope")} if "slope" in loads else {}  # a cover takes one number
     loads = loads or {"force": 0.0}
+    # vectors give the reasons of a list of loads, also of a single one
     loads = {name: np.atleast_1d(load) for name, load in loads.items()} | slope
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
+        # takes the place of all further lines; the right side is computed before
         lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have no steady speed"]
     if (
         arguments.output is not None or arguments.format != "text"
@@ -365,6 +369,7 @@ def ensemble(arguments: Namespace) -> None:
         arguments.output,
         cluster=arguments.cluster,
         threads=arguments.threads,
+        # a bar on a terminal, else lines of text or nothing
         progress=sys.stderr.isatty()
         or (False if os.environ.get("VISCOROLL_QUIET") == "1" else "lines"),
     )
@@ -385,7 +390,7 @@ def verify(arguments: Namespace) -> int:
     """
     verdict = vr.runs.verify(arguments.store)
     print(f"{arguments.store}: {verdict}")
-    return not verdict.ok
+    return not verdict.ok  # True is exit code 1
 
 
 @command(
@@ -526,7 +531,7 @@ def _figure_of_netcdf(path: str) -> Any:
             else "cannot be read (Permission denied)"
         )
         raise vr.FileError(path, problem) from error
-    except vr.ParameterError:
+    except vr.ParameterError:  # a ValueError too, but no sign of an incomplete result
         raise
     except (AttributeError, KeyError, ValueError) as error:
         raise vr.FileError(
@@ -557,5 +562,6 @@ def _figure_of_toml(path: str) -> Any:
         return next(iter(read_materials(path).values())).plot()
     roller = read_roller(path)
     extrema = roller.resistance_extrema().V
+    # extrema ascend in speed; without any both ends are the unit of speed
     low, high = (extrema[0], extrema[-1]) if extrema.size else (roller.scale["V"],) * 2
     return roller.contact(np.geomspace(low / _MARGIN, high * _MARGIN, _SPEEDS), delta=0.0).plot()

@@ -340,15 +340,18 @@ def parser() -> Parser:
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
     groups = {"": program.add_subparsers(metavar="COMMAND", required=True)}
     for words, (run, options) in COMMANDS.items():
+        # of a single word the group is "", whose subparsers are those of the program
         group, _, name = words.rpartition(" ")
         if group not in groups:
             subparser = groups[""].add_parser(group, help=_GROUPS[group])
             groups[group] = subparser.add_subparsers(metavar="COMMAND", required=True)
         text, _, example = HELP[words].partition("\n\nexample:")
+        # the first sentence, which ends its line
         summary = text.partition(".\n")[0].rstrip(".")
         epilog = f"example:{example}" if example else None
         subparser = groups[group].add_parser(name, help=summary, description=text, epilog=epilog)
         for option in options:
+            # a list is a group of which one at most may be given
             alternatives = option if isinstance(option, list) else [option]
             target = (
                 subparser.add_mutually_exclusive_group() if alternatives is option else subparser
@@ -369,6 +372,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     program, and go on.
     """
     if sys.stdout is None:  # closed by the shell
+        # prints need an object to write to
         sys.stdout = io.StringIO()
     try:
         with warnings.catch_warnings():
@@ -412,6 +416,7 @@ def _run(argv: Sequence[str]) -> int:
         code = arguments.run(arguments) or 0
     except SystemExit as end:  # argparse ends so after --help and --version
         code = int(end.code or 0)
+    # here, so that a full disk or a closed pipe is an error of main, not of the interpreter's end
     sys.stdout.flush()
     return code
 

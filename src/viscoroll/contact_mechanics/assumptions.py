@@ -95,6 +95,8 @@ class Assumption(NamedTuple):
         array([ True, False])
         """
         faults = np.flatnonzero(~self.holds)
+        # the first violation from the begin of each part on, or the number of states if there is
+        # none
         next_fault = np.append(faults, self.holds.size)[
             np.searchsorted(faults, np.append(0, last[:-1] + 1))
         ]

@@ -107,6 +107,7 @@ def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
         / (body.storage(rate) * _modulus_over_shear(body.nu, data.plane) / (2.0 * (1.0 + body.nu)))
         for name, body in bodies.items()
     }
+    # compliances 1/E* of both bodies: the peak pressure is E* a/(2 R) with the sum of both
     whole = (2.0 if pair.like else 1.0) * sum(soft.values())
     found = {}
     for name, body in bodies.items():
@@ -119,6 +120,7 @@ def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
             G = body.storage(rate) / (2.0 * (1.0 + body.nu))
             table = _layer_shear(body.nu)
             part = np.interp(0.5 * length / body.thickness, _THETA, table)
+            # the peak of the elliptic pressure of the load is 4 P/(pi length)
             found[name] = part * 4.0 * load / (math.pi * length * G)
     return found
 
@@ -151,6 +153,7 @@ def _layer_shear(nu: float) -> Floats:
         k = np.geomspace(1e-4, 60.0 / min(a, 1.0), _WAVES)
         z = np.linspace(0.0, min(2.5 * a, 1.0), _DEPTHS)[:, np.newaxis]
         s = np.minimum(k, 25.0)
+        # beyond k h = 25 cosh and sinh overflow the digits, and the layer is a half-space
         kz = np.minimum(k, 25.0) * z
         B, D = _layer_terms(s, nu)
         cosh = np.cosh(kz)
@@ -160,6 +163,7 @@ def _layer_shear(nu: float) -> Floats:
         bend = (1.0 + B * kz + 2.0 * D) * cosh + (D * kz + B) * sinh
         deep = k > s  # a half-space to rounding
         difference = np.where(deep, 2.0 * k * z * np.exp(-k * z), f + bend)
+        # dk = k d ln k, in equal steps of ln k, cancels 1/k of the pressure
         shear = 0.5 * difference @ j1(k * a) * np.log(k[1] / k[0])
         found[n] = np.abs(shear).max()
     return found
@@ -296,6 +300,7 @@ class BodyData:
         if self.scene.cover is not None:
             u = np.exp2(_OCTAVES_OF_SPEED)
             (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
+            # the transit frequency |V|/(lam l0) is u/lam, from which u = |V|/l0 is looked up
             low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
         else:
             low, high = transit_speeds(series, np.array([low, high])).tolist()
@@ -315,6 +320,7 @@ class BodyData:
         if any(data.misfit > MISFIT_LIMIT for data in self.records.values()):
             return NO_SPEEDS
         low, high = self.measured_rates
+        # for speeds that are inside for every cylinder
         return low * float(np.max(self.l0)), high * float(np.min(self.l0))
 
     @cached_property
@@ -380,6 +386,7 @@ class BodyData:
         """Speed of the slowest shear wave in any of the cylinders, m/s; None where no density is
         known.
         """
+        # the ratio of a speed of 1 m/s
         slowness = self.wave_ratio(np.ones(()), None).ratio
         return None if slowness is None else 1.0 / float(np.max(slowness))
 
@@ -457,6 +464,7 @@ class BodyData:
             if self.plane == "strain"
             else "plane stress: a thin disc"
         )
+        # gamma = P T_ref^2/(m R), so that this is P/(m g)
         weights = extent_of(self.scene.gamma * self.R / (_GRAVITY * self.T_ref**2))
         return report._replace(
             quasistatic=assess_inertia(*self.wave_ratio(fastest, density)),

@@ -250,6 +250,7 @@ def contact(
         )
     if scale.si:
         if ACCURACY in found:
+            # until here M_error has the values of lam
             frequency = transit_frequency(given["V"], found[ACCURACY] * scale["length"])
             found[ACCURACY] = moment_error(frequency, roller.body_data.records)[()]
         found = {
@@ -267,7 +268,7 @@ _NUMBERS = frozenset({float, int, np.float64})
 _EVERY_SPEED = 0.0, math.inf
 #: Makes :class:`Loads` from four numbers, faster than its constructor.
 _loads = partial(tuple.__new__, Loads)
-#: Makes :class:`LoadsAndSlopes` from eight numbers.
+#: Makes :class:`LoadsAndSlopes` from ten numbers.
 _loads_and_slopes = partial(tuple.__new__, LoadsAndSlopes)
 
 
@@ -330,7 +331,7 @@ class Law:
             (``function``) and the addresses of its user data for results without slopes (``plain``)
             and with slopes (``address``).
         Sets ``_jitted`` (the law), ``_function``, ``_plain`` and ``_sloped`` (these three), and
-        ``_output``, the type of the buffer of eight doubles for the results.  Returns None.
+        ``_output``, the type of the buffer of ten doubles for the results.  Returns None.
         """
         from ..kernels.law.law_callables import ResultBuffer
 
@@ -439,7 +440,7 @@ class Law:
         global variable.
 
         It is called as (V, omega) with two numbers in the units of the roller, and returns
-        :class:`LoadsAndSlopes` of eight floats; all of them are NaN where the law would raise an
+        :class:`LoadsAndSlopes` of ten floats; all of them are NaN where the law would raise an
         error.  It does not warn.
         """
         return self._jitted  # type: ignore[no-any-return]
@@ -450,7 +451,7 @@ class Law:
         user data.
 
         The function is ``int law(double V, double omega, double out[10], void *user_data)``.  It
-        takes V and omega in the units of the roller, fills ``out`` with the eight numbers of
+        takes V and omega in the units of the roller, fills ``out`` with the ten numbers of
         :class:`LoadsAndSlopes` in their order (Q, M, M_half_space, M_cylinder, dQ_dV, dQ_domega,
         dM_half_space_dV, dM_cylinder_dV, dM_half_space_domega, dM_cylinder_domega) and returns 0;
         where the law
@@ -541,7 +542,7 @@ def law(roller: Roller | LawGrid) -> Law:
     -------
     Law
         A function (V, omega) -> named tuple of Q, M, M_half_space, M_cylinder; with ``slopes=True``
-        also of four derivatives (:meth:`Law.__call__`).  Threads may share it; pickled, it binds
+        also of six derivatives (:meth:`Law.__call__`).  Threads may share it; pickled, it binds
         its scene anew.
 
     Raises

@@ -301,7 +301,7 @@ def evaluate_contact(
         arrays = {name: np.asarray(value) for name, value in arrays.items()}
         shape = broadcast_shape(**arrays)
         refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * float(V)) <= fastest:
+    elif not abs(scene.kappa * float(V)) <= fastest:  # true of NaN too
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
         raise ParameterError(
@@ -314,6 +314,7 @@ def evaluate_contact(
     if isinstance(material, Prony | Bodies):
         allowed = "left out for many materials in one call: compute it for one of them, material[i]"
         refuse_fields(names, (UNSTEADY,), allowed)
+        # the index of the material stands in the place of alpha
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
@@ -420,6 +421,7 @@ def evaluate_law(
 
             unsteady_loop(material.unsteady_record, parts[0], parts[2], N)
         else:
+            # the state has no table of N: its zeta, and N by the modes at that zeta
             zeta = np.empty((1, stop - start))
             loop(
                 laws,
@@ -429,6 +431,7 @@ def evaluate_law(
             )
             N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
+    # few states of one law: no blocks, threads and readers, which would take longer than the states
     if count <= states.TOGETHER and record:
         numbers = broadcast_rows(arrays, shape)
         numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)

@@ -90,12 +90,15 @@ def _memory(X: Floats) -> Floats:
     for k in range(1, _NEAR_TERMS):
         term = -term * x / k
         entire -= term / k
+    # E_1(x) = entire - gamma - ln x, and of found, which is gamma + ln|x|, exp(x) - 1 parts are
+    # left
     found[near] = np.exp(x) * entire - np.expm1(x) * found[near]
     middle = ~(near | far)
     x = X[middle]
     integral = np.where(x > 0.0, exp1(np.abs(x)), -expi(np.abs(x)))
     found[middle] += np.exp(x) * integral
     inverse = 1.0 / X[far]
+    # f ~ sum (-1)^k k!/X^(k+1)
     term = inverse
     tail = term.copy()
     for k in range(1, _FAR_TERMS):
@@ -126,6 +129,7 @@ def _half_space(
     for strength, length in modes:
         X = x / length
         normal += strength * length / np.pi * (_memory(X) + X * np.log(np.abs(X)) - X)
+        # the local coupling remembers the load behind it alone, X < 0
         coupling += strength * (length * np.expm1(np.minimum(X, 0.0)) + ramp)
     return normal, coupling
 
@@ -147,8 +151,10 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     phase = size[:, np.newaxis] * k
     small = phase < _SMALL_PHASE
     safe = np.where(small, 1.0, phase)
+    # 1 - cos y = 2 sin^2(y/2) keeps its digits
     even = np.where(small, 0.5 - phase**2 / 24.0, 2.0 * (np.sin(0.5 * safe) / safe) ** 2)
     odd = np.where(small, phase / 6.0 - phase**3 / 120.0, (safe - np.sin(safe)) / safe**2)
+    # the nodes have (L - 1)/u and (T - L)/u; here L - 1, T - 1 and C, and dk = du/thickness
     excess = np.array([nodes.L, nodes.L + nodes.shear, nodes.C]) * nodes.u
     phases = np.array([even, odd]).reshape(2, BINS, DEGREE + 1, k.size)
     return k, phases, excess / (np.pi * thickness)
@@ -168,10 +174,13 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
     compliance = np.full(k.size, complex(instant))
     for strength, length in modes:
         compliance += strength / (1.0 - 1j * k * length)
+    # columns 0 to 2 are those of L - 1, T - 1 and C with the real part of the compliance, 3 to 5
+    # with the imaginary part; the coupling, without -i sgn(k), takes them the other way round
     weights = np.concatenate([excess * compliance.real, excess * compliance.imag]).T
     even, odd = (phases @ weights).reshape(2, -1, 6).transpose(0, 2, 1)
     sign = np.array([1.0, -1.0])[:, np.newaxis, np.newaxis]
     found = np.concatenate([even[3:5] + sign * odd[:2], even[2:3] - sign * odd[5:]], axis=1)
+    # phases are divided by y^2 = (k x)^2, the second antiderivative of a wave by k^2
     return found * _fit()[0] ** 2
 
 
@@ -211,6 +220,7 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     values = np.zeros((2, 3, size.size))
     for row, sign in enumerate((1.0, -1.0)):
         normal, coupling = _half_space(instant, modes, sign * size)
+        # T = L = 1: shear strains a half-space as pressure tilts it
         values[row, 0] = values[row, 1] = normal
         values[row, 2] = body.local * coupling
     if math.isfinite(body.thickness):
@@ -405,6 +415,7 @@ class CoupledPair(NamedTuple):
             shares = {"base": 1.0 - material.share, "cylinder": material.share}
             parts = [(side, share, *material.body(side)) for side, share in shares.items()]
         else:
+            # like half-spaces: any nu will do, and 0.5 is that of bodies without coupling
             parts = [(side, 0.5, material, 0.5, None) for side in ("base", "cylinder")]
         made = [
             CoupledBody(
@@ -416,7 +427,7 @@ class CoupledPair(NamedTuple):
                 T=tuple(series.T.tolist()),
             )
             for side, share, series, nu, thickness in parts
-            if share > 0.0
+            if share > 0.0  # a rigid body has no part of the compliance
         ]
         return cls(tuple(made))
 
@@ -468,6 +479,9 @@ class CoupledProfile(NamedTuple):
 class CoupledRow:
     """States of a pair at one speed u = kappa |V|, as functions of the reduced creepage 2 kappa
     delta.  Its compiled kernels release the GIL.
+
+    pair, u, mu : the bodies, kappa |V|, and the coefficient of friction.
+    n : number of elements of the contact.
     """
 
     def __init__(self, pair: CoupledPair, u: float, mu: float, n: int = ELEMENTS) -> None:
@@ -482,6 +496,7 @@ class CoupledRow:
         self.u = u
         self.mu = mu
         layer = edge_layer(pair.bodies, u)
+        # elements of the edge layer: its weight for each factor of e by which it is shorter
         self.n = n + round(
             0.5 * coupled_states.WEIGHT_OF_LAYER * math.log(max(_UNLAYERED / layer, 1.0))
         )
@@ -489,6 +504,8 @@ class CoupledRow:
         table = np.ascontiguousarray(sum(each.table for each in kernels.values()))
         instant = math.fsum(each.instant for each in kernels.values())
         local = np.concatenate([each.local for each in kernels.values()])
+        # kernels of the cylinder alone, by which M and work are divided; of a single body they are
+        # its
         own = kernels.get("cylinder", next(iter(kernels.values())))
         coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = coupled_states.Row(
@@ -504,14 +521,17 @@ class CoupledRow:
             layer=layer,
         )
         self._full = np.zeros((2, coupled_states.COLUMNS))
+        # a guess of the half length: that of elastic half-spaces of the instantaneous compliance
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         ends = [
             coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
             for sign, out in zip((-1.0, 1.0), self._full, strict=True)
         ]
+        # kappa delta at the onset of full slip of negative and of positive sign
         self._ends = [onset for onset, _ in ends]
 
-        # guesses that are the same for bodies that are swapped
+        # guesses that are the same for bodies that are swapped: the half length, column 9, and
+        # d ln(load)/d ln(half length), the second of each of the ends
         self._length = 0.5 * float(self._full[0, 9] + self._full[1, 9])
         self._slope = 0.5 * float(ends[0][1] + ends[1][1])
 
@@ -549,6 +569,7 @@ class CoupledRow:
         """
         given = np.asarray(creeps, dtype=np.float64)
         found = np.empty((given.size, coupled_states.COLUMNS))
+        # kernels take kappa delta, half of the reduced creepage, ascending
         order = np.argsort(given)
         low, high = self.onsets()
         inside = order[(given[order] > low) & (given[order] < high)]
@@ -616,7 +637,7 @@ class CoupledRow:
         unit = coupled_states.LOAD / np.trapezoid(p, found.nodes)
         return CoupledProfile(
             nodes=found.nodes,
-            shift=0.5 * out[0] * out[1],
+            shift=0.5 * out[0] * out[1],  # half of lam times epsilon
             p=p * unit,
             q=q * unit,
             status=int(out[8]),

@@ -96,6 +96,7 @@ def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
     times = np.array([time for body in pair.bodies for time in body.T])
     if not times.size:
         return _ELASTIC
+    # about the shortest relaxation time: retardation time times instantaneous compliance
     shortest = min(min(body.T) * (1.0 - math.fsum(body.J)) for body in pair.bodies if body.T)
     low = _SPEED_RANGE[0] / times.max()
     high = _SPEED_RANGE[1] / shortest
@@ -143,6 +144,7 @@ def tabulate(
     def solve(n: int, _: int) -> None:
         edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
 
+    # two passes: the states of a row need its middle creepage, which is smoothed over all rows
     run_blocks(begin, len(work), 1, progress="coupled table: kernels" if progress else None)
     edges[: len(work), 0] = _without_outliers(edges[: len(work), :3])
     run_blocks(solve, len(work), 1, progress="coupled table: states" if progress else None)
@@ -168,7 +170,7 @@ def _without_outliers(edges: Floats) -> Floats:
     from scipy.signal import savgol_filter
 
     middle, low, high = edges.T
-    place = (middle - low) / (high - low)
+    place = (middle - low) / (high - low)  # 0 and 1 at the onsets
     rows = np.arange(place.size)
     for neighbours, far in _OUTLIERS:
         good = np.abs(place - median_filter(place, neighbours, mode="nearest")) <= far
@@ -196,6 +198,7 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
     free = middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
     if not 0.0 < row.u < math.inf:
         state = _fields(row.states([free]), np.array([free]), row.u, mu)[0]
+        # kappa (Q delta - W_base - W_cylinder), from 2 kappa delta and works times 2 kappa
         friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
         if friction <= _STICKS:
             middle = free
@@ -229,6 +232,7 @@ def _hold_rest(fields: Floats, middle: int) -> None:
     fields[middle, 0] = 0.0
     moments = fields[middle, 1:3].copy()
     fields[:, 1:3] -= moments
+    # what a body loses, M_b + W_b, stays; columns are kappa M_b and 2 kappa W_b
     fields[:, 6:8] += 2.0 * moments
 
 
@@ -250,6 +254,7 @@ def _hold_friction(
     found = float(_spline(t, fields[:, columns].sum(axis=1), place)(place))
     shift = (friction - found) / len(columns)
     for column in columns:
+        # M_b + W_b, what the body loses, stays: kappa M_b in this column, 2 kappa W_b five on
         fields[:, column] += shift
         fields[:, column + 5] -= 2.0 * shift
 
@@ -296,6 +301,7 @@ def _free_place(t: Floats, Q: Floats) -> float:
     """
     from scipy.optimize import brentq
 
+    # Q rises with t: its zero lies below the middle if Q is positive there
     sign = -1.0 if Q[t.size // 2] > 0.0 else 1.0
     return float(brentq(_spline(t, Q, sign), *sorted((0.0, sign)), xtol=1e-15))
 
@@ -330,7 +336,9 @@ def measure_errors(
         draw = draws[n]
         row = CoupledRow(pair, u, rows.mu, elements)
         low, high = row.onsets()
+        # edges of the rows between the limits of u = 0 and u infinite: the middle creepage
         middle = np.interp(math.log(u), np.log(rows.u), rows.edges[1:-1, 0])
+        # three within 2.5 % of the distance of the onsets, where the two splines meet
         near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
         creeps = np.concatenate([near, low + (high - low) * draw[3:]])
         exact = _fields(row.states(creeps), creeps, u, rows.mu)

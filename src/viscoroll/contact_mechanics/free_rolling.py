@@ -86,15 +86,18 @@ class Curve:
         )
         # The formulas of the modes at 1/(2 zeta) need no kernel of contacts, which a warning need
         # not compile.
+        # half_rates is zeta: points are even in ln 1/(2 zeta), but for the margin.
         half_rates = 0.5 * np.exp(_MARGIN * math.log(2.0) - points)
         (_, h_over_zeta, half_space, cylinder), _, N = evaluate_by_modes(material, half_rates)
         self.ln_u = points - _MARGIN * math.log(2.0) - 0.5 * np.log1p(2.0 * h_over_zeta)
+        # above: u = lam/(2 zeta) with lam = (1 + 2 h/zeta)^(-1/2).  M is kappa times the moment
         u = np.exp(self.ln_u)
         M = u * (half_space + cylinder)
         self._low = float(u[0])
         self._high = float(u[-1])
         self._M_high = float(M[-1])
         self._N, self._u2_over_M = CubicSpline(self.ln_u, N), CubicSpline(self.ln_u, u * u / M)
+        # integrals of du/M and of u du/M, over ln u
         self._time, self._distance = (
             CubicSpline(self.ln_u, u / M).antiderivative(),
             self._u2_over_M.antiderivative(),
@@ -115,6 +118,7 @@ class Curve:
         below the splines linear in u, above proportional to u^-2.
         """
         ln_u, beyond = self._locate(u)
+        # at the first point the slope over ln u is u dN/du: N is linear in u below
         return (self._N(ln_u) + self._N_slope * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(
             beyond, 1.0
         ) ** 2
@@ -138,6 +142,7 @@ class Curve:
         and that to rest is infinite.
         """
         ln_u, beyond = self._locate(u)
+        # above the splines M falls as 1/u, so that the integral of du/M grows as u^2
         return self._time(ln_u) + 0.5 * self._high / self._M_high * (
             np.maximum(beyond, 1.0) ** 2 - 1.0
         )
@@ -147,6 +152,7 @@ class Curve:
         the splines proportional to u, 0 at u = 0.
         """
         ln_u, beyond = self._locate(u)
+        # above the splines M falls as 1/u, so that the integral of u du/M grows as u^3
         above = self._high**2 / (3.0 * self._M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
         return (self._first_distance + self._distance(ln_u)) * np.minimum(beyond, 1.0) + above
 
@@ -162,6 +168,7 @@ class Curve:
         roots = np.sort(
             np.concatenate([self._N.solve(value, extrapolate=False) for value in (level, -level)])
         )
+        # roots at which |N| rises as u falls: a motion leaves the level there
         falls = roots[self._N(roots) * self._N(roots, 1) < 0.0]
         last = float(np.abs(self._N(self.ln_u[-1])))
         behind = (
@@ -192,6 +199,8 @@ class Curve:
         longest = _SHORT * np.maximum(2.0 * distance, _CLIMB)
         W = np.zeros(u.shape)
         for J, T in zip(*self.modes, strict=True):
+            # distance of the time T at the start, in half contact lengths at rest, which the motion
+            # may be too short for; and the part of the creep that the standstill was too short for
             L = np.minimum(2.0 * u * T, longest)
             fresh = np.exp(-rested / T)
             W += (
@@ -339,6 +348,7 @@ class FreeRolling:
             index = np.arange(unit.size)
         gamma = np.nan if scene.gamma is None else scene.gamma
         with np.errstate(over="ignore"):
+            # + 0 index: in the shape of the materials too
             u = np.asarray(scene.kappa * np.abs(V) * unit + 0.0 * index)
             g = gamma * unit * unit / (1.0 + np.asarray(scene.j))
         u, index = np.broadcast_arrays(u, index, g)[:2]
@@ -435,7 +445,7 @@ class FreeRolling:
                 )
                 for row, value in zip(out, values, strict=True):
                     row[part] = value
-        return [row.reshape(self.u.shape)[()] for row in out]
+        return [row.reshape(self.u.shape)[()] for row in out]  # [()]: a number without axes
 
     @cached_property
     def unsteadiness(self) -> Any:
@@ -484,14 +494,17 @@ class FreeRolling:
             """
             end = np.empty(u.size)
             below = np.empty(u.size, bool)
+            # the unsteadiness is g |N|: limit_speed takes one level of |N|, so a call for each g
             levels, group = np.unique(g, return_inverse=True)
             for n, value in enumerate(levels):
                 part = group == n if levels.size > 1 else slice(None)
                 end[part], below[part] = curve.limit_speed(u[part], level / value)
+            # where the part is empty, u stands for its end, so that time and distance are 0
             start = np.where(below, end, u)
             left = curve.distance(np.where(below, end, u))
             time = np.where(start > 0.0, curve.time(u) - curve.time(start), np.inf)
             distance = np.where(below, curve.distance(u) - left, 0.0)
+            # times and distances of the curve are those of g = 1, and in inverse proportion to g
             return [end, np.where(below, time, 0.0) / g, distance / g, left / g]
 
         end, time, distance, left = self._evaluate(evaluate, [0.0, np.inf, np.inf, 0.0])
@@ -522,9 +535,12 @@ class FreeRolling:
             W = curve.work(u, distance / g, rested)
             part = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)
             kept = np.sqrt(1.0 - part)
+            # part of the energy that is lost; for a small one the difference of distances would
+            # cancel: u lost is u part/2, and the distance to rest changes by u/(g M) for each u
             lost = np.where(
                 part > _SMALL_LOSS, (distance - curve.distance(u * kept)) / g, 0.25 * W / curve.M(u)
             )
+            # u (1 - kept) without cancellation
             return [u * part / (1.0 + kept), np.where(u > 0.0, lost, 0.0)]
 
         speed, distance = self._evaluate(evaluate, [0.0, 0.0], rested / self.time)

@@ -130,6 +130,7 @@ def warn_of_contact(
         return
     if not motion:
         waves = data.wave_speed
+        # speeds have signs: the lowest may be the fastest
         too_fast = waves is not None and (ends[1] > waves or -ends[0] > waves)
         _warn_of_faults(
             [NOT_SMALL] * (not data.small_at_rest)
@@ -342,6 +343,7 @@ def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
     if one_time and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
         return True
     lower_ends, slow = _slow_starts(material, gamma, j)
+    # the entry at or below u; below the table the first one
     return slow[max(bisect(lower_ends, u) - 1, 0)]
 
 
@@ -370,6 +372,8 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
     alpha, kappa, mu, gamma, j, V0, omega0 = columns
     part = 1.0 - 1.0 / alpha
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        # the speed at the start, or that at which slip ends, by the momentum that Q cannot change;
+        # then N as at high speeds, where it falls as u^-2, and the loss of full slip
         u = kappa * np.maximum(np.abs(V0), np.abs(V0 + j * omega0) / (1.0 + j))
         unsteady = np.where(u > 0.0, gamma * part / (1.0 + j) / u**2, 0.0)
         slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)

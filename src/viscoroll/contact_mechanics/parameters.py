@@ -194,6 +194,7 @@ class Parameters(Roller):
         if self.coupled is not None:
             check_bool("coupled", self.coupled)
         if isinstance(material, LawGrid | LawTable):
+            # as given, for replace(): the table of a grid holds at one kappa
             vars(self)["_given_law"] = material
         if isinstance(material, LawGrid):
             material = material.table(check_number("kappa", values["kappa"], above=0.0))
@@ -221,8 +222,10 @@ class Parameters(Roller):
             low, high = RATIO_RANGE
             least_mu, most_mu = extents["mu"]
             least_kappa, most_kappa = extents["kappa"]
+            # bounds of all ratios first: arrays of many are divided only if these do not suffice
             if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
                 _refuse_ratio(arrays["mu"], arrays["kappa"])
+        # by ``vars``, as the class is frozen
         numbers = {name: read_only(array) for name, array in arrays.items()}
         vars(self).update(numbers, shape=shape, material=material)
 
@@ -372,6 +375,7 @@ class Parameters(Roller):
 
         if not self.material.shape:
             return is_coupled(CoupledPair.of_scene(self))
+        # a slice: an array of no materials has no first one
         firsts = [self.replace(material=one) for one in self.material[:1]]
         return any(map(is_coupled, map(CoupledPair.of_scene, firsts)))
 

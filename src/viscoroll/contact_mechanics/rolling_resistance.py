@@ -126,6 +126,7 @@ class Branches:
                 inside &= np.abs(load - values[0]) > tolerance
             if self.extremum[last]:
                 inside |= np.abs(load - values[-1]) <= tolerance
+            # searchsorted needs rising values: a falling branch is searched with the other sign
             indices.append(index := inside.nonzero()[0])
             above = (
                 values.searchsorted(load[index], "right")
@@ -185,6 +186,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     V = found.u[found.extremum] / scene.kappa
     M = found.resistance[found.extremum] / scene.kappa
     warn_of_contact(roller, V * scale["V"])
+    # M rises from 0: the first extremum is a maximum, and both kinds alternate
     return ResistanceExtrema(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
 
 
@@ -216,6 +218,7 @@ def branches(law: LawTable, gain: float) -> Branches:
         u = u[np.abs(u - at) > _SEPARATION * at]
     whole = np.concatenate([u, flat])
     order = np.argsort(whole)
+    # extrema were put behind the nodes
     is_flat = order >= u.size
     u = whole[order]
     ends = np.concatenate([[0], np.flatnonzero(is_flat), [u.size - 1]])
@@ -279,6 +282,7 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
     low, high, rising = (np.concatenate(each) for each in zip(*brackets, strict=True))
     for _ in range(_BISECTIONS if low.size else 0):
         middle = 0.5 * (low + high)
+        # the middle has the sign of the lower end
         before = (function(middle) > 0.0) != rising
         low = np.where(before, middle, low)
         high = np.where(before, high, middle)
@@ -325,6 +329,7 @@ def _refine_near_double_roots(
         for _ in range(_REFINEMENTS):
             points = np.linspace(low, high, _REFINED_NODES)
             values = function(points)
+            # nearest to the other sign; not an end, so that a point is left on either side
             least = int(np.clip(np.argmin(values * sign[n]), 1, _REFINED_NODES - 2))
             if values[least] * sign[n] < 0.0:
                 found.append((points, values))

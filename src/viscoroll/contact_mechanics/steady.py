@@ -145,6 +145,7 @@ class _ScanProblem(NamedTuple):
             gains on omega must not add to 0.
         Raises ParameterError of a cover, where the gains leave Q open.
         """
+        # loads at omega = V; slip times the gains on omega is added to them
         force, torque = self.loads_at(free.V, free.V)
         of_force, of_torque = self.load_rows[:, 2]
         law = self.contacts.law
@@ -163,6 +164,7 @@ class _ScanProblem(NamedTuple):
             cylinder = free.M_cylinder + by_cylinder
         else:
             return (free.M - (force + torque)) / (of_force + of_torque)
+        # either balance gives the slip; that of the larger gain loses fewer digits
         if abs(of_force) > abs(of_torque):
             return (half_space - force - Q) / of_force
         return (cylinder + Q - torque) / of_torque
@@ -207,11 +209,14 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
     parts = [States.none()]
     for n in range(loads.mu.size):
+        # columns of the rows of force and torque: at rest, gain on V, gain on omega
         at_rest = np.array([[loads.force[n]], [loads.torque[n]]])
         contacts = Contacts(law, loads.kappa[n], loads.mu[n])
         for sign in (1.0, -1.0):
+            # a motion towards -x is the mirror image: its loads have the other sign, its gains stay
             problem = _ScanProblem(contacts, np.hstack([sign * at_rest, gained]))
             is_layer = law.cover is not None or law.coupled is not None
+            # of half-spaces slip follows from the speed unless the gains on omega cancel
             by_speed = is_layer or problem.load_rows[:, 2].sum()
             x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
             rows = _polish(problem, np.exp2(x) / contacts.kappa, slip)
@@ -252,10 +257,12 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     law = contacts.law
     if law.cover is not None or law.coupled is not None or not (gain and total):
         return []
+    # the sum of both balances without M; then that of the axis must hold with Q = +-mu
     omega = -total / gain
     side = math.copysign(1.0, omega)
     if side * contacts.mu + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
+    # the limit V -> 0 of full slip: the slowest node, at a creepage far beyond the onset
     slowest = np.exp2(speed_nodes(law)[:1]) / contacts.kappa
     rows = state_rows(contacts, slowest, 1.0 / slowest)
     spinning = States.of(loads, np.array([n]), np.array([side]), rows)
@@ -291,7 +298,9 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     free = problem.free_rolling(nodes)
     low, _, high = free.slips
     off = np.abs(problem.slip(free) - 0.5 * (low + high))
+    # nodes at an onset count as partial slip in spite of rounding
     stuck = off <= 0.5 * (high - low) * (1.0 + 1e-9)
+    # intervals with an end in partial slip, where the balance changes fast, get further nodes
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     fine = (
         nodes[within, None]
@@ -299,6 +308,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     )
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
     free = problem.free_rolling(nodes)
+    # the size of the terms of the balance of the axis, of which its rounding is a fraction
     speeds = [np.ones_like(free.V), free.V, free.V + problem.slip(free)]
     terms = problem.contacts.mu + free.M_half_space + np.abs(problem.load_rows[0]) @ np.abs(speeds)
     found = find_zeros(
@@ -322,6 +332,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     law, kappa, mu = problem.contacts
+    # crossings of both directions are found; those of V > 0 belong to this frame
     _, sign, u = find_crossings(law, of_V, np.array([kappa * at_rest]))
     positions = [np.empty(0)]
     slips = [np.empty(0)]
@@ -330,10 +341,12 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
         limit = free.slips[2, 0]
         rest = free.M_half_space - problem.loads_at(free.V, free.V)[0]  # Q + gain slip
 
+        # defaults keep x and limit of this turn
         def residual(part: Floats, x: float = x, limit: float = limit) -> Floats:
             return problem.residual(np.full(part.size, x), limit * part)
 
         sides = np.array([1.0, -1.0])
+        # the slip at which Q = +-mu balances the axis; it is full slip if beyond the limit
         full = (rest - sides * mu) / problem.load_rows[0, 2]
         partial_slip = limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
         slips += [partial_slip, full[sides * full > limit]]
@@ -363,6 +376,9 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     (of_V, of_omega) = gains.sum(axis=0)
     (force_V, force_omega) = gains[0]
     for _ in range(_NEWTON_STEPS if V.size else 0):
+        # slopes of Q, M_half_space and M_cylinder over V at fixed omega, then over omega.  With
+        # omega = V + slip a slope over the slip is that over omega, one over V at fixed slip is the
+        # sum
         (a, one, other), (b, one_omega, other_omega) = slopes_at_fixed_omega(rows)
         sum_slip = one_omega + other_omega - of_omega
         sum_V = one + other + (one_omega + other_omega) - of_V - of_omega
@@ -390,6 +406,7 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     new = (np.abs(np.diff(V)) > _SAME_STATE * V[1:]) | (
         np.abs(np.diff(delta)) > _SAME_STATE * np.abs(delta[1:])
     )
+    # the first state is new; without states there is none to mark
     return rows[:, order[np.concatenate([[True], new]).astype(bool)[: order.size]]]
 
 
@@ -483,7 +500,7 @@ def steady(
     slope = plain["slope"]
     level = roller
     (roller, scene, scale) = resolve_model(roller, "steady", slope=slope)
-    if type(scene.alpha) is not float:
+    if type(scene.alpha) is not float:  # a float, the common case, is no array
         refuse_arrays(level, scene, ("alpha",), slope=slope)
     force = make_dimensionless("force", plain["force"], scale)
     torque = make_dimensionless("torque", plain["torque"], scale)

@@ -138,6 +138,7 @@ def loads_of(
         arrays["V"] = check_array("V", V)
         refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
     shape = broadcast_shape(**arrays)
+    # the rows are in the order of the fields of Loads; slope counts for the shape alone before
     arrays["force"] = push + arrays.pop("slope")
     rows = broadcast_rows(arrays.values(), shape)
     return Loads(shape, Gains(*of_force, *of_torque), given, *rows)
@@ -262,11 +263,14 @@ class Shear(NamedTuple):
         on_axis = 1.0 + self.half_space + 2.0 * self.half_space_excess * used
         on_spin = 1.0 - self.cylinder - 2.0 * self.cylinder_excess * used
         if law.cover is None:
+            # M/V of both at rest, power 0 of the first row
             half_space, cylinder = law.coefficients[0, 0, 2:4, None] * np.ones(Q.size)
             return on_axis, on_spin, half_space, cylinder
         limit, free = creep_at_rest(law)
         part = np.where(used < 1.0, used, 0.0)
         still = np.zeros(Q.size)
+        # at rest |Q|/mu = 1 - (1 - |creep|/delta_star)^2; limit is 2 kappa delta_star/mu, and free
+        # 2 kappa times the creepage of free rolling
         creep = 0.5 * limit * mu / kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
         delta = creep_beyond_free(self.contacts, still, creep) + 0.5 * free / kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
@@ -299,6 +303,7 @@ def creep_at_rest(law: LawTable) -> tuple[float, float]:
     """
     if law.cover is None:
         return 1.0, 0.0
+    # 2 kappa delta_star/mu and f of base and cylinder, power 0 of the first row
     limit, half_space, cylinder = law.cover.creep[:3, 0, 0]
     return float(limit), float(half_space + cylinder)
 
@@ -315,6 +320,7 @@ def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
         return creep
     names = "delta_minus", "delta_plus", "delta_star", "delta_0"
     low, high, star, free = contacts.fields(V, 0.0, *names)
+    # d = 1 and -1 at the onsets: their mean is delta_0 + c delta_star
     return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
 
@@ -362,11 +368,12 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     for n, kappa in enumerate(loads.kappa):
         contacts = Contacts(law, kappa, loads.mu[n])
         for sign in (1.0, -1.0):
+            # a motion towards -x is the mirror image, under loads of the other sign
             one = loads._replace(force=sign * loads.force[n], torque=sign * loads.torque[n])
             zeros = find_zeros(partial(torque_left, contacts, one), nodes, noise[n])
             load.append(np.full(zeros.size, n))
             signs.append(np.full(zeros.size, sign))
-            speeds.append(np.exp2(zeros) / kappa)
+            speeds.append(np.exp2(zeros) / kappa)  # zeros are log2(kappa V)
     return np.concatenate(load), np.concatenate(signs), np.concatenate(speeds)
 
 
@@ -518,9 +525,11 @@ def loads_without_omega(
         Q = contacts.mu * fields["Q_over_mu"]
         half_space = fields["M_half_space"] / contacts.kappa
         cylinder = fields["M_cylinder"] / contacts.kappa
+        # falls with the creepage, as Q grows
         left = wanted - (Q - axis * half_space + spin * cylinder)
         low = np.where(left > 0.0, delta, low)
         high = np.where(left > 0.0, high, delta)
+    # left is rounding, but where no creepage between the onsets balances: what friction lacks
     return Q + left, half_space, cylinder
 
 

@@ -330,6 +330,7 @@ class Steady(Equilibria):
         )
         R, P = (append_axis(self.scale[name]) for name in ("R", "P"))
         moving = V != 0.0
+        # (omega R - V) Q = V delta Q; at V = 0, where delta is infinite or a limit, omega R Q
         slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
         free_half_space, free_cylinder = self._free * append_axis(self.scale["M"])
         half_space = V * free_half_space / R
@@ -421,6 +422,7 @@ def pad(rows: Floats, number: Integers, count: Integers, shape: tuple[int, ...])
     """
     most = int(count.max(initial=0))
     if most * count.size > number.size:  # some have fewer
+        # place of each among those of its state
         place = np.arange(number.size) - (np.cumsum(count) - count)[number]
         padded = np.full((len(rows), count.size * most), np.nan)
         padded[:, number * most + place] = rows
@@ -453,20 +455,25 @@ def pack_result(
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
     force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
     torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
+    # with V given: the balance of the axis, and that of the cylinder
     if loads.given == "torque":
         force = M_half_space - Q
     elif loads.given == "force":
         torque = M_cylinder + Q
     grip = 1.0 - np.abs(Q) / loads.mu[number]
+    # rows: those of _FIELDS, V to omega from the states; then the moments without traction and the
+    # three of the eigenvalues, which are read below
     more = np.array([M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary])
     rows = np.concatenate([states.rows[: Field.FAST], more])
     rows = pad(rows, number, count, loads.shape)
     found = dict(zip(_FIELDS, rows, strict=False))
     if scale.si:
         for name in found.keys() & DIMENSIONS.keys():
+            # a unit for each load needs an axis for the equilibria
             unit = scale[name]
             per_load = isinstance(unit, np.ndarray)
             found[name] = found[name] * (unit[..., np.newaxis] if per_load else unit)
+    # the unit of all three, 1/s of a cylinder; one for each load needs an axis for the equilibria
     fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
     eigenvalues.real[..., 0] = fast

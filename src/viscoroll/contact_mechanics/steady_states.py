@@ -150,6 +150,7 @@ class States(NamedTuple):
         )
         rows[list(signed)] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
+        # of the frame where V > 0: a mirror image has the same eigenvalues
         rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers, loads.gains, loads.j[load])
         return cls(load, rows)
 
@@ -184,11 +185,13 @@ class States(NamedTuple):
         part = np.abs(Q) / mu
         rows = np.zeros((_COUNT, load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
+        # delta_star (1 - sqrt(1 - |Q|/mu)) without cancellation, the creepage of Carter's contact
         star = 0.5 * limit * mu / kappa * part / (1.0 + beta)
         forth, back = (
             creep_beyond_free(contacts, still, sign * star) for sign in (np.sign(Q), -np.sign(Q))
         )
         free = 0.5 * free_limit / kappa
+        # 0, or NaN where the friction does not suffice
         rows[Field.OMEGA] = 0.0 * beta
         rows[Field.DELTA] = forth + free
         rows[Field.Q] = Q
@@ -268,7 +271,7 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
     unit = np.minimum(j, 1.0)
     slow = np.minimum(V, 1.0)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-        # where Q does not depend on omega, neither do the moments
+        # where Q does not depend on omega, neither do the moments: ``slips`` makes 0/0 0/1 there
         slips = dQ_ddelta == 0.0
         on_axis = 1.0 - half_space_ddelta / (dQ_ddelta + slips)
         on_spin = 1.0 + cylinder_ddelta / (dQ_ddelta + slips)
@@ -285,6 +288,8 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         det = (det + gains.force_omega * spin) / (j / unit)
         half = 0.5 * (unit * axis + (slow * gains.torque_omega - on_spin * b) / (j / unit))
         product = np.sqrt(np.abs(det)) * np.sqrt(slow)
+        # with y = unit slow times an eigenvalue: y^2 - 2 half y + det unit slow = 0; the larger
+        # root has no cancellation, and the other eigenvalue follows from the product of both
         power = np.frexp(np.maximum(np.abs(half), product))[1]
         spread = np.ldexp(half, -power) ** 2
         spread -= np.ldexp(det * unit, -power) * np.ldexp(slow, -power)
@@ -321,6 +326,7 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     if np.minimum.reduce(V, initial=_LEAST_SPEED) < _LEAST_SPEED:
         speed = np.maximum(V, _LEAST_SPEED)
         rows[Field.DQ_DV :] = contacts.fields(speed, delta, *_ROWS[Field.DQ_DV - 2 :])
+    # a slope over omega times V is one over the creepage
     rows[list(_OVER_CREEP)] *= speed
     return rows
 
@@ -349,6 +355,7 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers,
     from ..kernels.law.law_functions import crossing_loop
 
     found = branches(law, gain)
+    # M is odd: motion with V < 0 is that with V > 0 under the opposite load
     signed = np.concatenate([total, -total])
     which, node = found.locate_loads(signed)
     totals = signed[which]
@@ -395,6 +402,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     free = contacts.fields(V, delta_0, *names)
     if law.cover is None:
         M = free[0] + free[1]
+        # part of M by the half-space; one half of elastic bodies, whose M is 0
         share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
         if loads.given is None:  # V is such that both loads balance M
             M = force + torque
@@ -416,6 +424,8 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     faster = V / root
     rolling = delta_0 if law.cover is None else contacts.free_creep(faster)
     less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")
+    # the formula of the module; for a small Q its difference is rounding, and |Q| over the slope
+    # ``rise`` = dQ/ddelta at Q = 0 takes its place
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
     creep = creep_beyond_free(contacts, V, np.copysign(size, Q))
     rows = state_rows(contacts, V, creep + delta_0)

@@ -115,6 +115,7 @@ class _States:
         self.sign = np.where(self.V < 0.0, -1.0, 1.0)
         if creep_is_omega:
             self.slip = given - self.V
+            # at V = 0 infinite, with the sign of the slip, and 0/0 without slip, which is 0
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 delta = self.slip / np.abs(self.V) * self.sign
                 self.delta = np.where(self.slip == 0.0, 0.0, delta)
@@ -124,6 +125,7 @@ class _States:
         self.u = self.kappa * np.abs(self.V)
         with np.errstate(over="ignore"):
             self.creep = 2.0 * self.kappa * self.delta
+        # states of one speed and friction share the onsets of full slip, which are solved once
         _, self.row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
 
     def groups(self) -> list[Any]:
@@ -181,6 +183,7 @@ def _fields_of_row(
     )
     found = row.states(creep, apart=True)
     refuse_unsolved(found.status, creep, row.u, row.mu)
+    # V over 2 kappa, as works are times 2 kappa; moments are times kappa
     half = 0.5 * np.abs(V) / kappa
     strain = found.work_base + found.work_cylinder
     low, high = row.onsets()
@@ -237,7 +240,9 @@ def coupled_stress(
         refuse_unsolved([found.status], [states.creep[n]], row.u, row.mu)
         place = number == n
         sign = states.sign[n]
+        # from the middle of the contact, of a motion along +x; for V < 0 all is mirrored
         y = sign * x[place] - found.shift
+        # tractions are over E'/(4 pi kappa)
         both = [np.interp(y, found.nodes, each, left=0.0, right=0.0) for each in (found.p, found.q)]
         out[:, place] = np.array(both) / (4.0 * np.pi * states.kappa[n])
         out[1, place] *= sign
@@ -389,6 +394,7 @@ def _stress_of_law(
         if scene.material_array is None
         else np.arange(len(scene.material_array), dtype=np.float64)
     )
+    # first the fields of Points in their order; an array of materials has their indices for alpha
     arrays = {
         "x": x,
         "kappa": scene.kappa,
@@ -421,6 +427,7 @@ def _stress_of_law(
             scene, read_alpha(start, stop), points=points, p=p[start:stop], tau=tau[start:stop]
         )
         if scene.cover is None:  # else tau is not computed
+            # + 0: outside the contact 0, not -0
             tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, p.size, _BLOCK)
@@ -483,6 +490,8 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     found = np.empty(x.size)
     for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
         place = which.ravel() == n
+        # from the middle, in half lengths; 2 P/(pi a) over E' is 1/(8 pi kappa lam), as a = lam
+        # l0/2 and l0^2 = 32 P R/E'
         y = 2.0 * x[place] / lam - epsilon
         found[place] = pressure(modes, zeta, 0.5 * lam, y) / (8.0 * np.pi * kappa * lam)
     return found

@@ -133,14 +133,17 @@ class Steadiness(Assumption):
         >>> float(Steadiness.along(states, motion.regime > 0, motion.x, ends=True).share)
         0.0
         """
+        # rest after a motion counts as a tiny speed, rest before it stays 0
         free = replace(
             free,
             u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0),
         )
         value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
+        # for each motion the time of its largest u
         fastest = free.take((np.argmax(free.u, axis=0), *np.indices(free.u.shape[1:])))
         to_rest = free.distance()
         steps = np.abs(np.diff(x, axis=0))
+        # distance to rest below which the error exceeds 10 %; all of it if it does at the fastest
         slow = np.where(
             fastest.unsteadiness > STEADY_LIMIT, np.inf, fastest.reach(STEADY_LIMIT).left
         )
@@ -282,7 +285,7 @@ def _describe_free(free: FreeRolling) -> str:
     fine = free.reach(0.1 * STEADY_LIMIT)
     start = free.start()
     text += f"the coasting distance is {whole:.4g}{length}; the error of V is below "
-    if fine.time:
+    if fine.time:  # 0 where the error is above 1 % at the start already
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
     if fine.speed:
         reached = (
@@ -419,6 +422,7 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
         )
         for slip in (_FULL_SLIP, -_FULL_SLIP)
     )
+    # in full slip Q = +-mu: half the difference of M is what shear adds, over mu the strain
     change = {name: 0.5 * (back[name] - forth[name]) / scene.mu for name in names[2:]}
     free = forth["delta_0"]
     star = forth["delta_star"]
@@ -524,6 +528,7 @@ def validity(
     if spin is not None:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
+        # delta_star of half-spaces is mu lam (1 + epsilon)/(2 kappa)
         full = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
         if scene.cover is not None:
             full = evaluate_contact(

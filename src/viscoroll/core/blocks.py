@@ -39,6 +39,7 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     because numba compiles a kernel again for each kind of array.
     Raises ValueError where ``array`` has more than one element and does not broadcast to ``shape``.
     """
+    # a single element stays one, which kernels read for every state
     if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
         vector = broadcast_vector(array, array.shape)
         return (
@@ -55,6 +56,8 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
         start, stop: index of the first element, and of the one after the last, 0 <= start < stop <=
         its size.
         """
+        # chunks of one axis, copied to a buffer where memory is not in order, within a range that
+        # is set below
         iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
         flags = ["external_loop", "buffered", "ranged"]
         chunks = iterator(
@@ -92,6 +95,7 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
     Raises ValueError where ``array`` has more than one element and does not broadcast.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
+    # a view of its own, so that the caller's array stays writable
     vector = whole.reshape(-1).view()
     vector.flags.writeable = False
     return vector
@@ -189,7 +193,7 @@ def run_blocks(
         ``$VISCOROLL_THREADS`` is not.
     """
     edges = ((start, min(start + block, count)) for start in range(0, count, block))
-    workers = blocks = -(-count // block)
+    workers = blocks = -(-count // block)  # rounded up
     if blocks > 1 or threads is not None:
         workers = min(thread_count(threads), blocks)
     elif count > 1:
@@ -205,6 +209,7 @@ def run_blocks(
         from tqdm import tqdm
 
         edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
+    # with a bar and no blocks the pool still needs one worker
     with ThreadPoolExecutor(max(workers, 1)) as pool:
         _submit_all(pool, work, edges, _BLOCKS_IN_QUEUE * workers)
 

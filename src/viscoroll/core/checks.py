@@ -116,6 +116,7 @@ def check_array_extent(
         states the first wrong element, and of several elements its index and the number of further
         wrong ones.
     """
+    # the common case, in a fraction of the time; inf < inf is false, so that infinity is refused
     if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)
     array = _as_doubles(name, value, unit, (low, above, high))
@@ -255,6 +256,7 @@ def check_number(
         If it is not one finite number (an array with axes is refused, even of one element), if it
         is outside these limits, or if its unit has another dimension.
     """
+    # as in check_array_extent; a NaN or infinity goes on and is refused
     if type(value) is float and above < value < high and low <= value:
         return value
     array = check_array(name, value, unit=unit, low=low, above=above, high=high)
@@ -275,6 +277,7 @@ def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     ParameterError
         If they do not broadcast; the message lists the shapes.
     """
+    # a set of the different shapes: mostly one, which needs no call of numpy
     shapes = {getattr(array, "shape", ()) for array in arrays.values()} - {()}
     try:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
@@ -300,6 +303,7 @@ def divide_by_unit(name: str, values: NDArray, unit: Any) -> Any:
     try:
         return values / unit
     except ValueError:
+        # raises the error that names both
         broadcast_shape(**{name: values, "cylinders": unit})
         raise
 
@@ -336,6 +340,7 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     """
     if type(value) is int and low <= value <= high:
         return value
+    # a bool is an int of Python, and a duration an integer of numpy
     if isinstance(value, bool | np.timedelta64) or not (
         isinstance(value, int | np.integer) and low <= value <= high
     ):
@@ -353,6 +358,7 @@ def check_text(name: str, value: Any) -> None:
     value: what a caller gave.
     Raises ParameterError for what is no text, and for one with NUL or surrogates.
     """
+    # UTF-8 has no code for surrogates, so that they are missing after the encoding
     if not (
         isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()
     ):

@@ -82,6 +82,7 @@ class Schedule:
             ),
         ):
             if wrong.any():
+                # a difference belongs to the time it begins at: the first k - 1 or k - 2 times
                 raise described_error(
                     "times", found.format(times[..., : wrong.shape[-1]][wrong][0]), allowed
                 )
@@ -184,6 +185,7 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
         raise ParameterError(name, "a Feedback", "no Feedback", sentence)
     wanted = dict(zip(("value", "V", "omega"), map(units.unit, (name, *_GAINS[name])), strict=True))
     value = _convert_fields(name, value, wanted)
+    # the value of a feedback has its own unit; that of a schedule is stated by the schedule
     schedule = (
         convert_argument(name, value.value, units)
         if isinstance(value.value, Schedule)
@@ -291,13 +293,14 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
         return value
     unit = scale[name]
     low = 0.0 if name in ("brake", "drag") else -np.inf
+    # the common case, without arrays; 0.0 of a brake, NaN and infinite values take the long way
     if type(value) is type(unit) is float and low < value < np.inf:
         return value / unit
     if isinstance(value, Feedback):
         sizes = {
             "gain on V": value.V,
             "gain on omega": value.omega,
-            "cylinders": unit * scale["V"] * scale["omega"],
+            "cylinders": unit * scale["V"] * scale["omega"],  # for its shape alone
         }
         broadcast_shape(**sizes)
         gains = value.V * scale["V"] / unit, value.omega * scale["omega"] / unit
@@ -317,6 +320,7 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
         )
     if isinstance(value, Schedule):
         values = check_array(f"values of {name}", value.values, low=low)
+        # the last axis of the values is that of the corners, and cylinders are the rows
         units = unit[:, np.newaxis] if np.ndim(unit) else unit
         return Schedule(value.times / scale["t"], divide_by_unit(name, values, units))
     quotient = divide_by_unit(name, check_array(name, value, unit=scale, low=low), unit)
@@ -404,6 +408,7 @@ class Labels(NamedTuple):
         if name not in self.coords:
             return name in self.dims and not values.ndim
         dims, label = self.coords[name]
+        # by numpy's rule of broadcasting the axes of the values are the last ones
         own = xr.DataArray(values, dims=self.dims[len(self.dims) - values.ndim :])
         return not xr.DataArray(label, dims=dims).broadcast_equals(own)
 
@@ -423,7 +428,7 @@ class Labels(NamedTuple):
         new = {
             name: f"given_{name}" if name in names else name for name in (*self.dims, *self.coords)
         }
-        new |= zip(self.dims, dims, strict=False)
+        new |= zip(self.dims, dims, strict=False)  # without new names nothing changes
         coords = {
             new[name]: (tuple(new[dim] for dim in own), values, {"long_name": name})
             for name, (own, values) in self.coords.items()
@@ -497,6 +502,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
         for kind in (_loaded_type("xarray", "DataArray"), _loaded_type("pandas", "Series"))
     )
     labelled = arrays | series
+    # [()] makes a number of numpy of an array without axes
     given |= {
         name: check_array(name, value)[()]
         for name, value in given.items()
@@ -554,6 +560,7 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
         )
         raise ParameterError(names, "unlike coordinates", "aligned", sentence) from error
     like = next(iter(whole.values())).drop_attrs()
+    # from the last array to the first, whose coordinates take the place of later ones
     others = {
         name: each for array in reversed(whole.values()) for name, each in array.coords.items()
     }
@@ -591,6 +598,8 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
             f"{names} have different indexes: align them first",
         )
 
+    # the levels of the index as columns; the last column has the values, with a name that no
+    # level has, since reset_index refuses a second column of one name
     levels = first.rename("").reset_index().iloc[:, :-1]
     dim = str(levels.columns[0]) if index.nlevels == 1 else "state"
     coords = {str(name): ((dim,), values.to_numpy()) for name, values in levels.items()}

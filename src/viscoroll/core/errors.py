@@ -401,10 +401,12 @@ def caller_level() -> int:
     Frames of the module dataclasses, whose ``replace`` calls back, are passed over too.  If all
     frames are those of this package, the outermost one counts.
     """
+    # frame 0 is this function, 1 its caller, whose own line is stacklevel 1; 2 is what called it
     level = 2
     frame = sys._getframe(2)
     while frame.f_back is not None:
         name = frame.f_globals.get("__name__", "")
+        # with the point "viscoroll" itself and its modules fit, but not "viscoroll_tools"
         if name != "dataclasses" and f"{name}."[:10] != "viscoroll.":
             break
         level = level + 1
@@ -458,6 +460,7 @@ def suggestion(name: str, candidates: Iterable[str]) -> str:
     import difflib
 
     known = list(candidates)
+    # by its letters "v0" is as near to "t0" as to "V0"
     similar = [each for each in known if each.lower() == name.lower()]
     similar += difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     return f"; did you mean {similar[0]!r}?" if similar else ""
@@ -480,6 +483,7 @@ def _suggesting(function: Any) -> Any:
             return function(*arguments, **named)
         except TypeError as error:
             for name in named:
+                # the end of Python's own message, which from 3.13 on goes on with a suggestion
                 if str(error).endswith(f"unexpected keyword argument '{name}'"):
                     error.args = (
                         f"{error}{suggestion(name, inspect.signature(function).parameters)}",
@@ -509,8 +513,10 @@ def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
             if base.__module__.startswith("viscoroll"):
                 suggest_arguments(base)
         if inspect.isfunction(function):
+            # of a function that was replaced before: the cache then gives the same replacement
             plain = inspect.unwrap(function)
             code = plain.__code__
+            # a plain method of a class has self, which counts as one
             if code.co_argcount + code.co_kwonlyargcount <= (
                 function is value and inspect.isclass(owner)
             ):
@@ -518,4 +524,5 @@ def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
             replaced = _suggesting(plain)
             setattr(owner, name, replaced if function is value else type(value)(replaced))
             if inspect.ismodule(owner):
+                # owner may be a package that imports the function from its module
                 setattr(sys.modules[function.__module__], name, replaced)

@@ -435,6 +435,7 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
         value = content
         for key in keys:
             value = value[int(key)] if isinstance(value, list) else value[key]
+        # without the indices of lists, which have no line of their own
         words = [key for key in keys if not key.isdecimal()]
         if missing := _MISSING.fullmatch(problem):
             raise section_error(
@@ -469,6 +470,7 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
     not have gives "".
     """
     for key in keys:
+        # of a union, as Section | None, the members too
         sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
         kind = next(
             (get_type_hints(each)[key] for each in sections if key in get_type_hints(each)), None
@@ -580,6 +582,7 @@ def find_line(text: str, name: str, key: str) -> int | None:
             header = found.group(1)
             if line.lstrip().startswith("[["):
                 tables.append(header)
+                # as errors name them: the first [[data]] has no number
                 header += f" {tables.count(header)}" * (tables.count(header) > 1)
             if header == full:
                 return number

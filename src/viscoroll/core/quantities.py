@@ -216,6 +216,7 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
         return _split_elements(name, value)
     if type(value) is np.ndarray and value.dtype.kind == "O" and value.ndim:
         elements, unit = _split_elements(name, list(value.flat))
+        # np.array would make further axes of elements that are lists
         numbers = np.empty(value.size, object)
         numbers[:] = elements
         return numbers.reshape(value.shape), unit
@@ -231,7 +232,7 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
         return duration, "s"
     unit = getattr(value, "unit", getattr(value, "units", None))  # of astropy and unyt
     if unit is not None and isinstance(value, np.ndarray | np.generic):
-        return np.array(value, subok=False), str(unit)
+        return np.array(value, subok=False), str(unit)  # the class of the library has units
     return value, None
 
 
@@ -264,11 +265,13 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
         factor, offset = conversion_factor(unit, target)
     except ParameterError as error:
         raise unit_error(name, unit, target, known="pint knows" not in error.allowed) from None
+    # where no temperature is wanted, an offset makes the meaning unclear: 20 degC or 20 K more
     if offset and target != _TEMPERATURE:
         raise unit_error(name, unit, target)
     if isinstance(value, list):
         return [convert(name, element, unit, target) for element in value]
     number = _as_floats(name, value)
+    # adding 0 would make -0.0 to 0.0
     return number * factor + offset if offset else number * factor
 
 
@@ -331,6 +334,7 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     different dimensions.
     """
     parts = [split_unit(name, value) for value in values]
+    # different units in the order of the elements: the first is that of the result
     units = list(dict.fromkeys(unit for _, unit in parts))
     if any(isinstance(number, bool | np.bool_) for number, _ in parts):
         raise ParameterError(name, f"{values!r:.60}", "numbers, no truth values")
@@ -367,6 +371,7 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
         raise described_error(
             name, "is a row of a table, with units in its index", "a column of it, or a number"
         )
+    # pint's type of columns has its numbers and their unit in ``quantity``
     data = (
         value.data
         if is_xarray
@@ -381,6 +386,7 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     unit = own if stated is None else str(stated)
     if not hasattr(value, "coords"):
         return type(value)(numbers, index=index) if index is not None else numbers, unit
+    # the old attributes and the name state the old unit
     labelled = value.copy(deep=False, data=numbers)
     labelled.attrs = {}
     labelled.name = None
@@ -398,6 +404,7 @@ def _title_unit(title: Any) -> str | None:
     if found is None or found[1].strip() in _DIMENSIONLESS:
         return None
     try:
+        # to itself, since any dimension is allowed: text in brackets may be no unit, as "V [fast]"
         conversion_factor(found[1], found[1])
     except ParameterError:
         return None
@@ -414,7 +421,7 @@ def _to_seconds(name: str, value: Any) -> Any:
     Raises ParameterError for a duration in months or years, whose length is not fixed, or without a
     unit.
     """
-    if isinstance(value, timedelta):
+    if isinstance(value, timedelta):  # that of pandas is one too, and has nanoseconds
         value = (
             value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)
         )
@@ -423,6 +430,7 @@ def _to_seconds(name: str, value: Any) -> Any:
     ):
         return None
     durations = np.asarray(value)
+    # generic: a number without a unit of time
     if np.datetime_data(durations.dtype)[0] in ("generic", "Y", "M"):
         raise ParameterError(
             name, f"{value!r:.60}", "a duration in weeks, days, hours, seconds or parts of them"

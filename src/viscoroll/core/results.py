@@ -77,8 +77,10 @@ class Result:
         ('V [m s-1]', ['delta', 'M [N m m-1]'])
         """
         data = self.to_xarray()
+        # max takes the first of several
         dims = max((variable.dims for variable in data.values()), key=len)
         data = data[[name for name, variable in data.items() if set(variable.dims) <= set(dims)]]
+        # a frame needs an index, which a dataset without axes does not give
         data = data if dims else data.expand_dims("state")
         names = {name: column_name(str(name), unit_of(data[name].attrs)) for name in data.variables}
         return data.to_dataframe().rename(columns=names).rename_axis(index=names)
@@ -389,6 +391,7 @@ class Values(Result):
         arrays = given | {name: np.asarray(value) for name, value in self._values.items()}
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         if self._labels and self._labels.axes_in_front(shape) >= 0:
+            # an argument that is itself the coordinate of its name needs no variable beside it
             alike = {name for name in given if not self._labels.differ(name, given[name])}
             dims, coords = dataset_axes(self._labels, shape, arrays.keys() - alike)
         else:
@@ -399,6 +402,7 @@ class Values(Result):
         data = {}
         for name, array in arrays.items():
             if name not in coords:
+                # netCDF has no truth values
                 numbers = array.astype(np.int8) if array.dtype == bool else array
                 whole = np.broadcast_to(numbers, shape) if array.ndim else numbers
                 data[name] = xr.Variable(dims if array.ndim else (), whole, self._attributes(name))
@@ -428,10 +432,12 @@ def _name_axes(
     """
     dims = []
     values = {}
+    # axes are counted from the last one, -1, by which arrays of fewer axes broadcast
     for axis, size in enumerate(shape, -len(shape)):
         varying = [
             name for name, array in given.items() if -axis <= array.ndim and array.shape[axis] > 1
         ]
+        # equal sizes: it has no other axis along which it varies
         if len(varying) == 1 and given[varying[0]].size == size:
             dims.append(varying[0])
             values[varying[0]] = given[varying[0]].ravel()

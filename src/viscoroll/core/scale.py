@@ -60,6 +60,7 @@ def dimension_powers(dimension: str) -> dict[str, int]:
     """
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
+        # letters, of l0 with its digit, then perhaps a power
         for symbol, power in re.findall(r"([^\W\d]+0?|%)\^?(-?\d+)?", part):
             found[symbol] = found.get(symbol, 0) + (-1 if n else 1) * int(power or 1)
     return {symbol: power for symbol, power in found.items() if power}
@@ -118,6 +119,7 @@ class Scale(dict[str, Any]):
         or an array (n,) of many cylinders; 1.0 for a ratio, a temperature, a molar energy, a name
         that the table of dimensions does not have, and for a scene.
         """
+        # one division in place of negative powers, each of which would round
         numerator = 1.0
         denominator = 1.0
         for factor, power in _POWERS.get(name, {}).items():
@@ -220,6 +222,7 @@ def describe_quantity(name: str, si: bool = False) -> str:
     if name in _WORDS:
         text = _WORDS[name].long_name
         if si and name == "delta":
+            # the creepage of a scene is in units where R = 1
             text = text.replace("omega", "omega R")
     elif name.startswith("d") and "_d" in name:
         dependent, _, variable = name[1:].partition("_d")

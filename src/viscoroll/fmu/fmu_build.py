@@ -93,6 +93,7 @@ def _read_model(name: str, text: str, *states: str) -> Model:
     file.
     """
     with (files(__package__) / "variables.csv").open(encoding="utf-8") as file:
+        # without the head; not strict: texts become numbers, truth values and None
         variables = msgspec.convert([*csv.reader(file)][1:], list[Variable], strict=False)
     return Model(
         text, tuple(variable for variable in variables if variable.model in ("both", name)), states
@@ -193,6 +194,7 @@ def model_description(
         stepSize="0.01",
     )
     variables = SubElement(root, "ModelVariables")
+    # 0 is time, as in the library
     references = {variable.name: str(n) for n, variable in enumerate(model.variables, start=1)}
     if version == 3:
         time = {"causality": "independent", "variability": "continuous", "unit": "s"}
@@ -296,7 +298,7 @@ def _add_structure(parent: Element, version: int, model: Model, references: dict
         references[variable.name] for variable in model.variables if variable.causality == "output"
     ]
     rates = [references[f"der_{state}"] for state in model.states]
-    unknowns = sorted((*outputs, *rates), key=int)
+    unknowns = sorted((*outputs, *rates), key=int)  # as numbers: 10 after 9
     kinds = {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": unknowns}
     if version == 3:
         kinds = {"Output": outputs, "ContinuousStateDerivative": rates, "InitialUnknown": unknowns}
@@ -421,6 +423,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive,
     ):
         for name, data in content.items():
+            # ZipInfo has a fixed time, so that equal content gives equal bytes
             archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
 
 
@@ -487,6 +490,7 @@ def _start_values(
     if table.pair is not None:
         values["E_prime"] = table.pair.E_prime
         if l0:
+            # of l0 = 4 sqrt(2 R P/E'), where the contact has this length at rest
             values["load"] = l0**2 * table.pair.E_prime / (32.0 * starts["R"])
     if isinstance(given, Cylinder):
         values |= {name: getattr(given, name) for name in ("R", "E_prime", "mu", "load")}
@@ -521,10 +525,12 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
     texts["stubs.h"] = _stubs(source, texts[f"fmi{version}FunctionTypes.h"], version)
     texts["model.h"] = constants
     law = (folder / "law.h").read_text(encoding="utf-8")
+    # sorted: glob has no order of its own
     token = hashlib.sha256(
         "".join((model, law, *(texts[name] for name in sorted(texts)))).encode()
     ).hexdigest()
     token = f"{{{token[:8]}-{token[8:12]}-{token[12:16]}-{token[16:20]}-{token[20:32]}}}"
+    # after the digest, which cannot contain itself
     texts["model.h"] += f'#define TOKEN "{token}"\n'
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -550,6 +556,7 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
     rows += [
         (
             v.name,
+            # 3 - True = 2: tunable
             0 if v.start is None else 1 if v.causality == "input" else 3 - v.positive,
             starts.get(v.name, 0.0),
         )
@@ -582,8 +589,10 @@ def _stubs(source: str, header: str, version: int) -> str:
     for kind, name, arguments in re.findall(
         rf"typedef\s+([\w\s*]+?)\s*\b(fmi{version}\w+)TYPE\s*\(([^)]*)\)", plain
     ):
+        # fmu.c has a definition, which begins in the first column; a call is indented
         if re.search(rf"^[\w *]+\b{name}\(", source, flags=re.MULTILINE):
             continue
+        # a parameter of a definition needs a name, which one of the header of FMI 2 lacks
         parameters = " ".join(arguments.replace("Byte[]", "Byte bytes[]").split())
         ok = f"fmi{version}OK"
         error = f"fmi{version}Error"

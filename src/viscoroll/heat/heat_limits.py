@@ -147,6 +147,7 @@ def heat_limit(
         rows = _limits(roller, allowed, arrays)
     else:
         refuse_arrays(roller, scene, ("alpha",))
+        # one state at a time: the load changes the contact length, and with it the law of a cover
         limits = np.vectorize(
             lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
             otypes=[float, float, bool],
@@ -184,12 +185,14 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
             zeros = zeros_at_speed(states, n, np.exp(ln))
         else:
             zeros = zeros_at_speed(states, n, states.V[n], np.exp(ln))
+        # zeros.state counts within n; without an equilibrium the temperature runs away
         coldest = np.full(n.size, np.inf)
         np.minimum.at(coldest, zeros.state, zeros.theta)
         return coldest - allowed
 
     every = np.arange(states.load.size)
     found = find_root(above, _LN_RANGE, args=(every,), tolerances=_TOLERANCE)
+    # the last point below the limit: at the end of a branch it misses the allowed temperature
     below = np.where(found.success, found.bracket[0], 0.0)
     short = -above(below, every)
     runaway = found.success & (short > _SHORT * (allowed - states.ambient))
@@ -224,6 +227,7 @@ def _limit_of_cover(
         limit = _limits(roller, allowed, given | {"load": math.exp(ln)})
         return math.log(limit[0] / abs(V))
 
+    # a first step as if the largest speed changed as 1/load
     start = math.log(roller.load)
     found = root_scalar(faster, x0=start, x1=start + faster(start), xtol=_COVER_TOLERANCE)
     load = math.exp(found.root)
@@ -300,6 +304,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     # from the hottest to ambient, near which V rises with the temperature
     ends = np.array([min(HOTTEST, curve.high), given["ambient"]])
     low, high = np.log2(curve.at(ends)[0]).tolist()
+    # without ambient itself, where no heat is given off and V is 0
     x = np.linspace(low, high, 2 + math.ceil(NODES * (high - low)))[:-1]
     y = ln_V(x)
     bend = np.diff(np.sign(np.diff(y)))
@@ -307,6 +312,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     sign = np.sign(bend[k - 1])  # -1 at a maximum
     triple = x[k - 1], x[k], x[k + 1]
     found = find_minimum(lambda x, sign: sign * ln_V(x), triple, args=(sign,))
+    # log2 a_T falls with temperature
     order = np.argsort(-found.x)
     V = np.exp(sign * found.f_x)
     return TurningPoints(V[order], curve.temperature_of(found.x)[order], sign[order] < 0.0)
@@ -373,7 +379,11 @@ def conductance(
         raise described_error("core", fault, "'insulated', or give both")
     if h is not None and np.any(h >= arrays["R"]):
         raise ParameterError("thickness", h, f"below R = {R}")
+    # circumference at the middle of the cover
     width = 2.0 * math.pi * (arrays["R"] if h is None else arrays["R"] - 0.5 * h)
+    # with a source q of unit volume the mean rise of a slab is q h^2/(12 k) (4 + B)/(1 + B) if one
+    # side is at ambient and the other has a film, B = film h/k; above the surface it is q h^2/(3 k)
+    # if the other side is insulated, and q R^2/(8 k) in a solid cylinder
     if core == "cooled":
         biot = arrays["film"] * h / k
         found = width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
@@ -418,6 +428,8 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
         check_number(name, x, unit=SI, above=0.0) for name, x in given.items()
     )
     biot = film * thickness / conductivity
+    # a slab with even sources, cooled on one side: the rise of the hottest point and the mean,
+    # both divided by that of the surface
     above = 100.0 * ((1.0 + 0.5 * biot) / (1.0 + biot / 3.0) - 1.0)
     return Assumption(
         biot <= BIOT_LIMIT,
@@ -517,11 +529,14 @@ def warming(
         heat = states.heat(every, y[: theta.size], speed(time))
         return np.concatenate([(heat - off) / heat_capacity, heat, off])
 
+    # temperatures, then heat and heat given off since t = 0, of all states
     y = np.concatenate([theta, np.zeros(2 * theta.size)])
     parts = [y[:, np.newaxis]] if times[0] == 0.0 else []
     last = times[-1]
     for span in pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
         own = times[(times > span[0]) & (times <= span[1])]
+        # the end of the span too, where the next one starts; it is no output unless it is in
+        # ``own``
         stops = np.union1d(own, span[1])
         found = solve_ivp(
             rates, span, y, "DOP853", stops, rtol=_TIME_TOLERANCE, atol=_TIME_TOLERANCE
@@ -533,6 +548,7 @@ def warming(
             )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])
+    # (states, times) each, in the order of y
     course, heat, off = np.split(np.concatenate(parts, axis=1), 3)
     if (hot := course.max(initial=-np.inf)) > states.curve.high:
         sentence = (
@@ -542,6 +558,7 @@ def warming(
         raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
     rows = states.fields(np.repeat(every, times.size), course.ravel(), V_t)
+    # a contact at V that is a_T times slower to relax is as one at a_T V at the reference
     warn_of_contact(roller, V_t * rows["a_T"])
     values = {name: rows[name] for name in ("temperature", "V", "C_rr", "M", "loss")}
     values |= {"heat": heat, "given_off": off}

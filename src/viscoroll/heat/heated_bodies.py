@@ -110,6 +110,7 @@ class ShiftCurve:
         vertical = self.material.vertical_shift
         reference = self.material.temperature
         inside = theta.clip(self.low, self.high)
+        # each temperature once, as a shift is a slow function of one number; ``...`` indexes all
         different, index = (
             np.unique(inside, return_inverse=True) if inside.size > 1 else (inside, ...)
         )
@@ -143,6 +144,7 @@ class ShiftCurve:
         """Return temperatures from ``cold`` to ``hot``, ascending, between which log2 a_T falls by
         at most 1/16 within the range of the shift, (m,).
         """
+        # a_T falls with temperature: least at the hot end
         least, most = NODES * np.log2(self.at(np.array([hot, cold]))[0])
         inner = self.temperature_of(np.arange(math.floor(least), math.ceil(most) + 1) / NODES)
         return np.unique(np.concatenate([[cold, hot], inner[(inner > cold) & (inner < hot)]]))
@@ -178,6 +180,7 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
         def temperature_of(x: Floats) -> Floats:
             return pole + slope / np.maximum(x + own, _LEAST)
 
+        # where log2 a_T reaches the largest that is evaluated
         low = pole + slope / (FARTHEST + own)
         return ShiftCurve(
             material=material,
@@ -193,6 +196,7 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
     if (rises := np.flatnonzero(np.diff(log2) > _ROUNDING)).size:
         found = f"rises at {theta[rises[0]]:.4g} degrees Celsius"
         raise described_error("shift", found, "a function that does not rise with temperature")
+    # log2 a_T falls: reversed it ascends, as interpolation requires
     slopes = np.diff(log2) / np.diff(theta)
     return ShiftCurve(
         material=material,
@@ -319,6 +323,7 @@ class HeatStates:
         else:
             parts, (rolling, slip) = self._driven(n, factors, V)
             loss = np.where(np.isnan(parts[2]), np.nan, rolling + slip)
+            # in the order of MOMENTS, divided by P R
             moments = np.array([parts[0] + parts[1], parts[0], parts[1]])
         found = dict(zip(MOMENTS, moments * (load * self.R[n]), strict=True))
         found |= {"C_rr": moments[0], "loss": loss, "loss_slip": slip}
@@ -368,7 +373,9 @@ class HeatStates:
         does not suffice; (loss in rolling, loss in slip), W/m, (m,) each).
         """
         a_T, root_b = factors
+        # over R/T_ref at the temperature, whose T_ref is a_T times that of the reference
         speed = np.abs(V) * self.roller.T_ref * a_T / self.R[n]
+        # one for each state, also where V is a number
         sign = np.where(V < 0.0, -1.0, 1.0) + np.zeros(n.size)
         loads: Any = self.loads
         vectors = {name: getattr(loads, name)[n] for name in ("force", "torque", "mu", "j")}
@@ -433,12 +440,13 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
         )
         raise described_error("roller", f"of {call} has no Material", allowed)
     bodies = (pair.cylinder, slip_share), (pair.half_space, 1.0 - slip_share)
+    # all loss in rolling is that of the body that relaxes, if there is one alone
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
     if not found:
         raise described_error(
             "material", "does not relax, and rolls without loss", "one that relaxes"
         )
-    if pair.like:
+    if pair.like:  # each has half of both losses, at one temperature
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
         allowed = (
@@ -486,6 +494,7 @@ def heat_states(
     if covered or driven is not None:
         refuse_arrays(roller, scene, ("alpha",))
     vertical = body.material.vertical_shift is not None
+    # the law keeps its shape beside a rigid body, of share 0 or 1 of the other, and of like bodies
     remade = vertical and roller.body_data.pair.share not in (0.0, 0.5, 1.0)
     if vertical and (covered or (remade and driven is not None)):
         allowed = (
@@ -512,6 +521,7 @@ def heat_states(
         force, torque = (
             make_dimensionless(name, driven[name], roller.scale) for name in ("force", "torque")
         )
+        # a V of 1 says that the speed is given and one load is found; speeds come with each call
         loads = loads_of(scene, force, torque=torque, slope=driven["slope"], V=np.ones(shape))
     return HeatStates(
         roller,

@@ -94,14 +94,17 @@ def zeros_at_speed(
         largest loss of free rolling can reach.
     Returns the :class:`Zeros`, whose ``state`` is an index into n.
     """
+    # l0 grows as the root of the load
     kappa = states.kappa[n] / np.sqrt(more)
     ambient = states.ambient[n]
     conductance = states.conductance[n]
     speed = np.abs(V)
+    # for kappa M = 1: the loss is P |V| M
     rise = states.body.part * states.load[n] * more * speed / (kappa * conductance)
     top = ambient + _MOST * rise if hottest is None else np.full(n.size, hottest)
     curve = states.curve
     if isinstance(states.law, LawTable) and states.loads is None and curve.slope:
+        # at rest any speed will do, as the rise is 0
         x = kappa * np.where(speed == 0.0, 1.0, speed * states.roller.T_ref / states.R[n])
         return _zeros_by_kernel(
             states.law, curve, x=np.log2(x), ambient=ambient, rise=rise, hottest=top
@@ -129,6 +132,7 @@ def _zeros_by_kernel(
     """
     from ..kernels.law.heat_zeros import HeatRequest, heat_loop
 
+    # log2 of kappa V a_T is x - own + slope/(theta - pole): x_hot is its limit at high theta
     request = HeatRequest(
         x_hot=x - curve.own,
         ambient=ambient,
@@ -141,6 +145,7 @@ def _zeros_by_kernel(
         farthest=FARTHEST,
     )
     size = count = 3 * x.size
+    # the kernel counts all zeros, and writes those for which there is room
     while count >= size:  # some states have more zeros than three
         size = count + 1
         number = np.empty(size, np.int64)
@@ -182,6 +187,7 @@ def zeros_of(
     parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
     for first in range(0, ambient.size, _BLOCK):
         own = np.arange(first, min(first + _BLOCK, ambient.size))
+        # a margin of 1 K, so that a zero at either end lies between nodes
         nodes = curve.nodes(ambient[own].min() - 1.0, hottest[own].max() + 1.0)
         rise = nodes - ambient[own, np.newaxis]
         f = rest(rise.ravel(), np.repeat(own, nodes.size)).reshape(rise.shape)
@@ -196,6 +202,7 @@ def zeros_of(
         n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
         ends = rise[n, k], rise[n, k + 1]
         found = find_root(rest, ends, args=(own[n],), tolerances=_ZERO_TOLERANCE)
+        # stable where f falls, from a positive node
         parts.append((own[n], ambient[own[n]] + found.x, positive[n, k]))
     n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
     found = theta <= hottest[n]
@@ -394,6 +401,7 @@ def temperature(
         every = np.arange(states.load.size)
         zeros = zeros_at_speed(states, every, states.V, hottest=HOTTEST if loaded else None)
         rows = states.fields(zeros.state, zeros.theta, states.V[zeros.state])
+    # V a_T: the speed at which the contact at the reference has these rates
     warn_of_contact(roller, rows["V"] * rows["a_T"])
     return _pack(states, zeros, rows, labels)
 
@@ -417,11 +425,13 @@ def _under_load(
         allowed = "left out where the speed follows from the load: give V"
         raise described_error("vertical_shift", "is given", allowed)
     force = 0.0 if driven["force"] is None else driven["force"]
+    # in the shape of all states, as ambient and conductance may have axes that the loads lack
     driven = driven | {"force": np.broadcast_to(force, states.shape)}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # of speeds at the reference
         found = steady(level, **driven)
     fields = {name: found[name] for name in ("V", "stable", *MOMENTS)} | vars(found.loss)
+    # without padding, which is NaN, and rest, which does not heat
     n, branch = np.nonzero(np.nan_to_num(found.V).reshape(states.load.size, -1))
     at = {name: np.reshape(x, (states.load.size, -1))[n, branch] for name, x in fields.items()}
     rolling = at["half_space"] + at["cylinder"]
@@ -616,6 +626,7 @@ def pair_temperatures(
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
+        # index of the pair, kappa, mu, V and delta
         state = [index, own, 1.0, speed * warm.T_ref / scale["R"], 0.0]
         return (
             load
@@ -636,11 +647,13 @@ def pair_temperatures(
 
     axes = []
     for at, G, curve in zip(around, off, curves, strict=True):
+        # the loss of a body is at most P |V|/(2 kappa)
         hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
         ends = np.log2(curve.at(np.array([at, hottest]))[0])
         axes.append(curve.temperature_of(np.linspace(float(ends[0]), float(ends[1]), _NODES)))
     grid = np.array(np.meshgrid(*axes, indexing="ij"))
     F = rest(grid.reshape(2, -1)).reshape(grid.shape) > 0.0
+    # (2 balances, cells, cells, 2, 2): cells in which each balance has both signs at the corners
     corners = np.lib.stride_tricks.sliding_window_view(F, (2, 2), axis=(1, 2))
     cells = (corners.any(axis=(3, 4)) & ~corners.all(axis=(3, 4))).all(axis=0)
     found: list[Any] = []
@@ -651,5 +664,6 @@ def pair_temperatures(
             found.append(at)
     theta = np.array(sorted(found, key=tuple)).reshape(-1, 2)
     loss = losses(theta.T).T
+    # capacity dtheta/dt is conductance times ``rest``, of both bodies with one capacity
     rates = [np.linalg.eigvals(off[:, np.newaxis] * slopes(at)).real.max() for at in theta]
     return PairTemperatures(theta, np.array(rates) < 0.0, loss.sum(axis=1) / (load * speed), loss)

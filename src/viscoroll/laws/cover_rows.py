@@ -98,8 +98,10 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     """
     local = local_pressure(modes, z, state) if any(body.local for body in modes.bodies) else None
     s, excess = _sources(modes, z, state, local)
+    # L and T - L together: the layers' tangential displacement by shear
     S, c = layer_operator(state.A, state.memory, (modes.L + modes.shear) * state.own / state.both)
     Phi = 2.0 * state.exponentials.ratio[1:]
+    # the strain C p of each body, which the traction of stick takes back, (N, 2)
     right = Phi @ (state.Xi @ excess) + s[1:]
     stick = np.linalg.solve(np.eye(state.q.size) + S[1:] + Phi @ (state.Xi @ c), right)
     creep = _shift(modes, state, c @ stick - excess) + S[0] @ stick - s[0]
@@ -107,8 +109,10 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     free = creep - 0.5 * state.creep_limit * stick[0] / state.q[0]
     # slopes by Q p are those that the pressure of -C p takes back
     change = np.linalg.solve(state.matrix, -right.sum(axis=1))
+    # the change is one of pressure: normal displacements again, without T - L
     S, c = layer_operator(state.A, state.memory, modes.L * state.own / state.both)
     shift = _shift(modes, state, c @ change + excess.sum(axis=1)) + S[0] @ change + s[0].sum()
+    # H = z q_1, at the same z
     load = float(change[0] / state.q[0])
     return Shear(
         moments=_moments(modes, z, state),
@@ -131,6 +135,7 @@ def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
     Returns the slope in units of V T_ref/R, a float, or (k,).
     """
     _, root, edge, x, sigma = state.exponentials
+    # transposed, so that one vector (modes,) and columns (modes, k) broadcast alike
     source = (sigma * excess.T).T
     within = modes.series.Q @ (root * (x[:, 1:] @ source).T).T
     return modes.series.t @ (source - (edge * within.T).T)
@@ -149,6 +154,8 @@ def _sources(
     Returns (terms from n = 0, (N + 1, 2); excess memory, (modes, 2)).
     """
     A = state.A
+    # odd + i even is i times the transform even - i odd of the pressure
+    # (:func:`.cover_solve.solve`)
     F = modes.mine * (modes.C * state.own / state.both * (state.odd + 1j * state.even))
     s = 2.0 * np.where(np.arange(len(A))[:, None] % 2, -(A @ F.imag.T), A @ F.real.T)
     s[0] *= 0.5
@@ -168,11 +175,12 @@ def _mirrored(modes: CoverModes, state: CoverState, local: LocalPressure | None)
     The part of a body is minus the mean of its C p, mirrored about the middle of the contact, with
     p as weight.
 
-
     modes: :class:`CoverModes`.
     state: :class:`CoverState`.
     local: what the coupling of short waves has in it; None: nothing.
     """
+    # the square of the transform, where the mean itself has that of its magnitude: it is the
+    # mirrored one
     strain = modes.C * (state.own * (state.odd + 1j * state.even) ** 2).real / state.v
     found = -2.0 / state.q[0] * (modes.mine @ strain)
     return found if local is None else found - local.mirrored
@@ -188,12 +196,15 @@ def _moments(modes: CoverModes, z: float, state: CoverState) -> Floats:
     z: half contact length divided by V T_ref, > 0.
     state: :class:`CoverState`.
     """
+    # what all layers change in the slopes by the pressure; a body moves by its part of the
+    # compliance
     total = modes.L * state.own / state.both
     multipliers = (
         modes.mine * (modes.L * state.own) + (modes.shares[:, None] - state.compliance) * total
     )
     smooth = 2.0 / state.q[0] * (multipliers.imag @ ((state.odd**2 + state.even**2) / state.v))
     if not modes.J.size:
+        # elastic bodies dissipate nothing
         return 0.0 * smooth
     _, _, e, t, _, Q = modes.series
     within = Q @ (state.X * _edge_weights(modes, z, state) / e)
@@ -219,6 +230,7 @@ def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
     sums = change * np.multiply.outer(alpha, alpha) / np.add.outer(alpha, alpha)
     # the rest of the terms, which is smooth
     m = np.arange(1, state.q.size + 1)
+    # without the terms of the relaxation modes, and of Hertz, z in the first
     rest = state.q - 2.0 * ratio[1:] @ state.X
     rest[0] -= z
     weights = -2.0 / alpha * (m[:, None] * ratio[1:])
@@ -305,6 +317,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     modes = CoverModes(cover)
     thickness = cover.thinnest
     slow_limit = _solve_elastic(modes, modes.cover.share, 1.0) if thickness > _THINNEST else None
+    # lam/2 is the half contact divided by l0, as is the thickness
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
         allowed = (
             f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
@@ -313,16 +326,21 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     if not modes.series.a.size:
         lam = slow_limit[_LAM]
         L = slow_limit[_LIMIT]
+        # lam, epsilon, M/V of both bodies, eta/F = lam/L, H/F^2 = 1/L^2 (:func:`_stick_functions`)
         table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
         limits = np.concatenate([[L, lam], slow_limit[_BESIDE[1:]], np.zeros(_COUNT)])
         return CoverRows(0, table, constant_rows(*slow_limit[_BESIDE]), limits)
+    # the cylinder's part in the instantaneous compliance 1/alpha of both, at most 1 but for
+    # rounding
     instant = modes.bodies[1].instant * modes.alpha
     fast_limit = _solve_elastic(modes, min(instant, 1.0), modes.alpha)
     # the solve loses digits of what shear does: its limits are extrapolated, to join the values at
     # the nodes
     slow_limit[3:] = fast_limit[5:] = math.nan
+    # beside a rigid body M/V at rest is exactly the sum of E_i/a_i, that is T_mean
     if 1.0 in modes.shares:
         slow_limit[_MOMENTS] = modes.shares * float(modes.series.e @ modes.series.e)
+    # the contact is longest at rest: all nodes have the number of terms that it needs
     orders = max(LEAST_TERMS, term_count(0.5 * slow_limit[_LAM] / thickness))
     e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
     widest = (
@@ -331,8 +349,11 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
         else max(cover.thickness, cover.other_thickness)
     )
     widest *= 1.0 if thickest is None else thickest / cover.thickness
+    # rolling is fast where even the shortest time is long beside the transit of l0, or of a length
+    # of the thicker layer
     last = math.frexp(modes.series.a[-1] * max(1.0, widest))[1] + _FAST_OCTAVES
     first_node = e0 * PER_OCTAVE - _END_NODES + 1
+    # the last of the slow 52 nodes is 2^e0, the first of the fast ones 2^last
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
     values = _solve_nodes(modes, u, orders)
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
@@ -356,6 +377,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     powers = np.append(
         pressure, rows.fit_slopes(*fitted[:, _FREE.start :], terms=SHORT_TERMS), axis=0
     )
+    # the limit at rest exactly, not as the fit has it
     powers[:, 0, 0] = slow_limit
     share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
     table = steady_table([powers[_LAM], powers[_EPSILON], *powers[_MOMENTS], share, press])
@@ -406,6 +428,9 @@ def _solve_node(
     goal = -math.log(4.0 * stiffness * u * u)
     thickness = modes.cover.thinnest
     if start is None:
+        # the length of elastic half-spaces, z = e^(goal/2), divided by the root of a stiffness that
+        # rises from 1 to alpha where u passes 1, and shortened where the layer is thinner than 0.2
+        # l0 or so
         rough = (
             0.5 * goal
             - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0))
@@ -422,19 +447,24 @@ def _solve_node(
         modes, u, y=start + _OFFSET, slope=slope, orders=orders, goal=goal
     )
     slope = (errors[1] - errors[0]) / (y[1] - y[0])
+    # epsilon = g/z of each solve; y has one entry more, the step after the last solve
     shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
     shift_slope = (shifts[1] - shifts[0]) / (y[1] - y[0])
     found = [
+        # lam = 2 z u, L = 2 u times the creep limit, epsilon, M/V
         np.array([2.0 * math.exp(each) * u, 2.0 * u * state.creep_limit, shift, state.moment])
         for each, state, shift in zip(y, states, shifts)
     ]
+    # from the last solve, at y[-2], on to y[-1], in units of the step that led to it
     part = (y[-1] - y[-2]) / (y[-2] - y[-3])
     lam, L, epsilon, moment = found[-1] + (found[-1] - found[-2]) * part
     z = math.exp(y[-2])
     shear = shear_of(modes, z, states[-1])
+    # d ln z/dQ by which the load stays the same
     tilt = -shear.load / slope
     slopes = lam * tilt, shear.shift / z + shift_slope * tilt
     free = 2.0 * u * shear.free
+    # the parts of the bodies, scaled to the extrapolated sum
     moments = shear.moments * (moment / shear.moments.sum() if modes.J.size else 0.0)
     values = np.array(
         [lam, L, epsilon, *moments, *free, *(2.0 * u * shear.mirrored - free), *slopes]
@@ -466,10 +496,12 @@ def _find_length(
         lengths.append(y)
         errors.append(math.log(states[-1].load) - goal)
         if len(errors) > 1:
+            # 2 on half-spaces, up to 5 on thin layers: bounds against a difference that is rounding
             slope = min(max((errors[-1] - errors[-2]) / (lengths[-1] - lengths[-2]), 0.5), 8.0)
         step = -errors[-1] / slope
         if len(errors) > 1 and abs(errors[-1] * errors[-2]) < _LOAD_ERRORS:
             return [*lengths, y + step], errors, states
+        # at most a factor of 2 in z at once; no step so small that the next slope would be rounding
         y += (
             min(max(step, -0.7), 0.7)
             if abs(step) > _LEAST_STEP
@@ -498,6 +530,7 @@ def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:
     values = np.empty((_COUNT, u.size))
     known = np.empty((u.size, 2))
     count = _EXTRAPOLATION.size
+    # known: ln z and the slope d ln H/d ln z of each node
     for n, speed in enumerate(u.tolist()):
         start, slope = (
             (_EXTRAPOLATION @ known[n - count : n]).tolist() if n >= count else (None, 2.0)
@@ -528,6 +561,7 @@ def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     Raises ParameterError where no contact length that carries the load is found.
     """
     values = _solve_node(modes.elastic(share), 0.5, orders=LEAST_TERMS, stiffness=stiffness)[0]
+    # the solve leaves rounding in them
     values[_EPSILON : _MOMENTS.stop] = 0.0
     return values
 
@@ -561,10 +595,13 @@ def _fit_fast_rows(
     )
     slopes[_MOMENTS] = (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
     fitted[_MOMENTS] = fitted[_MOMENTS] * x_inverse
+    # coefficients of y = begin/u become those of 1/u; M/V was divided by y, and its own are of
+    # 1/u^2
     first *= begin
     first[_MOMENTS] *= begin
     order = [_LIMIT, _LAM, *_BESIDE[1:]]
     packed = np.concatenate([limits[order], first[order], first[[_EPSILON]], first[_MOMENTS]])
+    # slopes over ln y have the other sign over ln u
     return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
 
 
@@ -601,6 +638,7 @@ def _fit_end(
         log_terms: number of terms times ln y, as in :func:`basis`.
         Returns (11, points), complex where ``at`` is.
         """
+        # lam to the moments by one degree; f, g, lam_Q and epsilon_Q, which need shear, by another
         parts = (values[: _FREE.start], _END_DEGREE), (values[_FREE.start :], _STRAIN_DEGREE)
         return np.concatenate(
             [
@@ -612,6 +650,7 @@ def _fit_end(
             ]
         )
 
+    # 1e-30 in place of 0, whose logarithm :func:`basis` takes also where no term has it
     limits = np.where(np.isnan(limits), fit(values, np.array([_TINY]), 0)[:, 0], limits)[:, None]
     # slopes by a step in the imaginary direction, which cancels no digits
     P = fit((values - limits) / y, wanted * (1.0 + 1j * _TINY), log_terms)
@@ -633,8 +672,10 @@ def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
     """
     points = PER_OCTAVE + 2 * _ASIDE + 1
     nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
+    # barycentric weights of equidistant nodes
     weights = np.array([(-1.0) ** k * math.comb(points - 1, k) for k in range(points)])
     # slopes by a step in the imaginary direction, which cancels no digits
+    # the node t of an octave lies at log2((t + 3)/2) octaves from its begin
     terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _TINY - nodes[:, None])
     basis = terms / terms.sum(axis=0)
     windows = np.lib.stride_tricks.sliding_window_view(values, points, axis=1)
@@ -663,9 +704,11 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     """
     v = rows.x.ravel()
     u = v.copy()
+    # the last double within the rows, beyond which they cannot be read
     end = math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
     for _ in range(60):
         values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
+        # limits[:2] are L and lam for u -> infinity, limits[8:10] their factors of 1/u
         first = limits[8:10, None] / u
         (L, lam), (d_L, d_lam) = np.where(
             u > end, [limits[:2, None] + first, -first], [values, slopes]

@@ -200,6 +200,7 @@ class CoverModes:
         kernels = []
         for name, share, sign in zip(BODIES, self.shares.tolist(), (1.0, -1.0)):
             series, nu, thickness = cover.body(name)
+            # a rigid body, whose share is 0, has no coupling
             local = sign * (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu) if share else 0.0
             bodies.append(
                 BodyModes(share / float(series.alpha), share * series.J, 1.0 / series.T, local)
@@ -208,6 +209,7 @@ class CoverModes:
                 nodes = layer_nodes(nu)
                 mine = np.full(nodes.u.size, name == "base", np.float64)
                 kernels.append(
+                    # u is the wave number times the thickness, and the thickness is over l0
                     [nodes.u / thickness, nodes.L, nodes.shear, sign * nodes.C, mine, 1.0 - mine]
                 )
         self.bodies = tuple(bodies)
@@ -262,6 +264,8 @@ def layer_nodes(nu: float) -> LayerNodes:
     Returns :class:`LayerNodes` of some 245 nodes.
     """
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
+    # with D = kap (1 + e^2) + (4 u^2 + 1 + kap^2) e: L = (kap (1 - e^2) - 4 u e)/D, and T has + 4 u
+    # e; e = exp(-2 u) in place of hyperbolic functions, which overflow
     kap = 3.0 - 4.0 * nu
     e = np.exp(-2.0 * u)
     denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
@@ -269,6 +273,7 @@ def layer_nodes(nu: float) -> LayerNodes:
     coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / (
         (kap + 1.0) * denominator
     ) - local
+    # L - 1 = -e rest/D, and T - L = 8 u e/D, both written without cancellation
     rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
     shear = du * e / denominator
     return LayerNodes(u, -shear * rest / u, 8.0 * shear, du * coupling / u)
@@ -284,6 +289,8 @@ def bessel(v: Floats, order: int) -> Floats:
     order: highest order, >= 0.
     Returns the values, dimensionless, a new array (order + 1, n): row k is (-1)^(k//2) J_k(v).
     """
+    # count points of (0, pi), of which symmetry leaves half: count is even.  The first alias of
+    # order n is J of order 2 count - n, which is beyond 2 max(v) + 40 and vanishes
     count = (int(v.max() + 0.5 * order) + 24) & ~1
     phi = (np.arange(count // 2) + 0.5) * (math.pi / count)
     arguments = np.multiply.outer(np.cos(phi), v)
@@ -301,6 +308,8 @@ def _decay_nodes() -> tuple[Floats, Floats]:
     Returns (x - 1 = 2 sinh^2(t/2) at the nodes of t, (n,); the weights times sinh(t) exp(-n t),
     [order, node], for orders from 0 to 100).
     """
+    # with x = cosh t the power is exp(-n t) and dx = sinh t dt; cosh t - 1 = 2 sinh^2(t/2) keeps
+    # its digits
     t, weights = _half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
     orders = np.arange(term_count(LARGEST_THETA) * 2 + 1)[:, None]
     return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
@@ -370,6 +379,7 @@ def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
     alpha = np.minimum(a * z, LARGE_ALPHA)
     beta = b * z
     n = np.arange(N + 1)[:, None]
+    # I_n/I_0 is exp(-n^2/(2 x)) for large x: the factor is 1 unless alpha was limited
     ratio = ive(n, alpha) / ive(0, alpha) * np.exp(0.5 * n * n * (1.0 / alpha - 1.0 / (a * z)))
     root = np.sqrt(ratio[1])
     k = k0e(beta) / k1e(beta)
@@ -390,6 +400,8 @@ def _excess_memory(v: Floats, A: Floats, beta: Floats, D: Floats) -> Any:
     D: memory of the terms of the series, as in :func:`decays`, (N + 1, modes).
     Returns complex numbers (modes, n).
     """
+    # the Chebyshev series of exp(i v x) is A_0 + 2 sum A_n T_n over even n + 2 i sum A_n T_n over
+    # odd n; D_0 = 1
     memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
     memory -= 2.0 * (D[2::2].T @ A[2::2]) + 2j * (D[1::2].T @ A[1::2])
     return memory
@@ -411,8 +423,11 @@ def layer_operator(A: Floats, memory: Any, weights: Any) -> tuple[Floats, Floats
     n = np.arange(N + 1)
     m = np.arange(1, N + 1)
     odd = m % 2 == 1
+    # the real part of the multiplier couples terms of equal parity, the imaginary part those of
+    # unlike parity, with a sign that depends on which of the two is odd
     even_part, odd_part = (2.0 * (A @ (A[1:] * part).T) for part in (weights.real, weights.imag))
     S = np.where((n[:, None] + m) % 2 == 1, odd_part * np.where(odd, m, -m), even_part * m)
+    # the term T_0 has half of the factor 2 of the others
     S[0] *= 0.5
     weighted = memory * weights
     return S, np.where(odd, weighted.imag @ A[1:].T, weighted.real @ A[1:].T) * m
@@ -450,7 +465,10 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     S, c = layer_operator(A, memory, modes.L * own / J)
     Phi = 2.0 * ratio[1:]
     right = Phi @ X0
+    # q_1 = z alone is the pressure of Hertz
     right[0] += z
+    # on half-spaces the pressure q_n makes the slope q_n T_n; the mean slope, row 0 of S, is part
+    # of the shift
     matrix = np.eye(N) + S[1:] + Phi @ (Xi @ c)
     q = np.linalg.solve(matrix, right)
     excess = sigma * (c @ q)
@@ -461,10 +479,14 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     mq = np.arange(1, N + 1) * q
     odd = mq[::2] @ A[1::2]
     even = mq[1::2] @ A[2::2]
+    # that of half-spaces, F = z + g, and what the shear of full slip adds at the front edge x = 1
+    # as T and L differ
     limit = z + shift + np.sum((modes.shear * own * (even - 1j * odd) * np.exp(1j * v)).real)
     return CoverState(
         load=z * q[0],
         shift=shift,
+        # arm of the load about the axis: the shift, and the mean x of the pressure, q_2/(2 q_1)
+        # half lengths
         moment=shift + z * q[1] / (2.0 * q[0]),
         creep_limit=limit,
         q=q,
@@ -511,10 +533,12 @@ def pressure(modes: CoverModes, z: float, half: float, x: Floats) -> Floats:
     state = solve(modes, z, half)
     # I_n/I_0 is below rounding from n = 9 sqrt(alpha) on
     width = math.sqrt(min(z * modes.series.a.max(initial=0.0), LARGE_ALPHA))
+    # 40 more, as for small alpha_i they fall with the order only
     terms = _pressure_terms(modes, z, state, max(state.q.size, math.ceil(9.0 * width)) + 40)
     # U_(m-1) is the derivative of T_m/m
     series = chebder(np.append(0.0, terms / np.arange(1, terms.size + 1)))
     inside = np.clip(x, -1.0, 1.0)
+    # the load on the half length a is pi a q_1/2: 2 P/(pi a) is q_1 in the unit of the pressure
     return np.sqrt((1.0 - inside) * (1.0 + inside)) * chebval(inside, series) / state.q[0]
 
 
@@ -566,9 +590,11 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> LocalPress
     from scipy.fft import dct, dst
 
     p = np.zeros(_INTERVALS + 1)
+    # with x = cos t the pressure is sum q_m sin(m t); the sine transform has a factor 2
     p[1:-1] = 0.5 * dst(_pressure_terms(modes, z, state, _INTERVALS - 1), type=1)
     t = np.arange(_INTERVALS + 1) * (math.pi / _INTERVALS)
     x = np.cos(t)
+    # dx = sin t dt; p in reverse order is the pressure mirrored about the middle
     weights = np.sin(t) * (math.pi / _INTERVALS) * p[::-1]
     a, _, e, _, _, _ = modes.series
     values = np.zeros((2, p.size))
@@ -578,6 +604,7 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> LocalPress
             continue
         own = body.instant * p + body.J @ _memory(p, x, body.b * z)
         mirrored[n] = 2.0 / (math.pi * state.q[0]) * body.local * (weights @ own)
+        # beside a rigid body its compliance over that of both is 1, without memory
         if modes.shares[n] == 1.0:
             values[n] = body.local * p
             continue
@@ -585,6 +612,8 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> LocalPress
         J = body.instant - modes.weights[n] * modes.J * modes.series.b @ (1.0 / modes.gap)
         strengths = -(e * e * a) * J
         values[n] = body.local * (body.instant * modes.alpha * p + strengths @ _memory(p, x, a * z))
+    # Chebyshev coefficients of values at these points; the last one, also twice its value, is not
+    # used
     terms = dct(values, type=1, axis=1).T / _INTERVALS
     terms[0] *= 0.5
     return LocalPressure(terms, mirrored)
@@ -610,6 +639,7 @@ def _memory(p: Floats, x: Floats, rates: Floats) -> Floats:
     reach = 1
     f[:, 1:] = gone * p[1:] + (p[:-1] - p[1:]) * mean
     while reach < p.size - 1:  # f_{k+1} = decay_k f_k + gain_k, for all k at once by doubling
+        # copies, as each part is read where the other is written
         f[:, 1 + reach :] += decay[:, reach:] * f[:, 1:-reach].copy()
         decay[:, reach:] *= decay[:, :-reach].copy()
         reach *= 2

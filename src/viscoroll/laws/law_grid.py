@@ -106,15 +106,18 @@ class LawGrid:
         if not self.slips:
             allowed = "states mu (in SI units with a load), and slips fully at both ends of delta"
             raise ParameterError("material", repr(self), f"a grid that {allowed}")
+        # rows hold M in N for kappa = 1: a table has kappa M/(P R)
         of_moments = kappa / (self.load * self.R)
         fields = self.rows.fields * [1.0, of_moments, of_moments]
         # lengths are not known, and the work of strain counts as that of slip
         fields = np.pad(fields, [(0, 0), (0, 0), (0, len(FIELDS) - fields.shape[-1])])
+        # u = kappa |V| with V over R/s, from V in m/s
         u = kappa / self.R * self.rows.u
         edges = kappa * self.rows.edges
         rows = replace(
             self.rows, mu=self.most / self.load, u=u, edges=edges, fields=fields, fastest=u[-1]
         )
+        # the material is not known: alpha = 1 stands for it
         return coupled_table(1.0, rows)
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
@@ -181,6 +184,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 
     content = io.BytesIO(read_sealed(path, _MOST_BYTES, "law or grid", "build it again"))
     try:
+        # else a variable with the unit "s" would become dates or durations
         table = xr.load_dataset(content, decode_times=False)
     except Exception:  # libraries raise many kinds
         return None
@@ -258,6 +262,7 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     """
     values = variable.values
     customary = () if variable.name in variable.dims else _FILL_VALUES
+    # NaN where none is declared: no value equals it
     declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
     filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
     _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
@@ -282,6 +287,7 @@ def _valid_range(variable: DataArray) -> Floats:
     limits = (variable.attrs.get("valid_min", low), variable.attrs.get("valid_max", high))
     packed = np.array([np.asarray(limit, np.float64).item() for limit in limits])
     factor = variable.encoding.get("scale_factor", 1.0)
+    # a negative factor exchanges low and high
     return np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
 
 
@@ -322,6 +328,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
             Q, np.abs(Q.values) > limit * (1.0 + _ROUNDING), path, f"within +-mu P = {limit:.6g}"
         )
         noise = _NOISE * np.abs(Q.values).max()
+        # + 0 Q: in the shape of Q
         creep = (table["delta"] - table.get("delta_0", 0.0) + 0.0 * Q).transpose(*Q.dims).values
         against = Q.values * np.sign(creep) < -noise
         against[..., 1:-1] = False  # of a layer without delta_0 the sign changes beside delta = 0
@@ -335,10 +342,12 @@ def check_nodes(table: Dataset, path: Any) -> None:
             M = table["M"].transpose(*Q.dims)
             of_cylinder = table.get("M_cylinder", 0.5 * M).transpose(*Q.dims)
             lost = (M + table["delta"] * (arm * Q + of_cylinder)).transpose(*Q.dims)
+            # noise/_NOISE is the largest |Q|
             made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), arm * noise / _NOISE)
             _refuse_nodes(
                 M, made, path, ">= -delta (R Q + M_cylinder), as the contact generates no power"
             )
+        # before the first node -infinity: it never falls there
         falls = np.diff(Q.values, prepend=-np.inf) < -noise
         _refuse_nodes(
             Q,
@@ -373,6 +382,7 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
         raise ParameterError("alpha", alpha, f"in [{low:.15g}, {high:.15g}], the range of {path}")
     if low == high:
         return table.squeeze("alpha")
+    # by the number of nodes, the last for all larger numbers
     method: Any = _METHODS[min(table.sizes["alpha"], len(_METHODS)) - 1]
     return table.assign_coords(alpha=np.log(table["alpha"])).interp(
         alpha=np.log(alpha), method=method
@@ -405,6 +415,7 @@ def _in_si(table: Dataset) -> Dataset:
         table = table.assign({name: table[name].astype(np.float64) * by})
     if given["V"] == "1":
         return table.assign_attrs(R=1.0, load=1.0)
+    # the load is needed only to make a limit of mu
     for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
         if name not in table.attrs:
             raise described_error(
@@ -436,10 +447,13 @@ def _law_of(table: Dataset) -> LawGrid:
     fields = np.stack([Q / most, *(field.values for field in moments)], axis=-1)
     # at V = 0 Q as at the slowest speed, and M over V alone is 0
     still = [1.0, *(float("delta" in field.dims) for field in bodies)]
+    # the last row stands for infinite speed, which kernels refuse: beyond V[-1] nothing is known
     fields = np.concatenate([fields[:1] * still, fields, fields[-1:]])
     middle = 0.5 * (delta[0] + delta[-1])
     half = 0.5 * (delta[-1] - delta[0])
+    # 2 kappa times creepages, with kappa = 1; free rolling is not known and set to the middle
     edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
+    # the ends exactly, which rounding would miss
     t = np.concatenate([[-1.0], (delta[1:-1] - middle) / half, [1.0]])
     rows = CoupledRows(
         mu=most,
@@ -501,6 +515,7 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
     for n, axis in enumerate(axes):
         one = make_interp_spline(axis, values, k=degrees[n], axis=n)
         knots.append(one.t)
+        # scipy returns coefficients with the axis of the spline first
         values = np.moveaxis(one.c, 0, n)
     return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees) if axes else values
 
@@ -528,6 +543,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     basis = np.zeros((edges.size - 1, TERMS, TERMS))
     every = BSpline(knots, np.eye(knots.size - degree - 1), degree)
     for power in own:
+        # in interval n only the basis splines n to n + degree are not 0
         basis[:, own, power] = every(edges[:-1], nu=power)[of, of + own] / math.factorial(power)
     return np.concatenate([[edges.size - 1, degree + 1, log, stride], edges, basis.ravel()])
 
@@ -558,6 +574,7 @@ def pack_spline(
     vectors = dict.fromkeys(
         ("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15)
     )
+    # kernels read four coefficients along each axis: the zeros keep them within the vector
     values = np.pad(found.c, [(0, 3 - degree) for degree in found.k]) if axes else np.asarray(found)
     for n, name in enumerate(axes):
         vectors[name] = _axis(

@@ -103,6 +103,7 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> Data
     )
     if law.coupled is not None:
         rows = law.coupled
+        # make_dataset reads the numbers of a kind of file as attributes of one object
         numbers = SimpleNamespace(**vars(rows), alpha=law.alpha, T_ref=law.T_ref)
         numbers.coefficients = rows.fields
         title = f"{_title(law)}, mu = {rows.mu:g}"
@@ -229,6 +230,7 @@ def parse_law(content: Content, path: Any) -> LawTable:
         e0 = int(numbers["e0"])
         if kind == COVER:
             functions = np.moveaxis(coefficients, -1, 0)
+            # the file has the functions of steady rolling, all but N, and then those of covers
             table = steady_table(functions[: -len(COVER_FUNCTIONS)])
             creep = functions[-len(COVER_FUNCTIONS) :]
             law = make_table(given, cover=CoverRows(e0, table, creep, numbers["limits"]))

@@ -105,6 +105,7 @@ class Rows:
         Returns (values; derivatives with respect to ln x, in the unit of the values), new arrays
         (functions, n) each, functions in the order of ``powers``.
         """
+        # x = mantissa 2^exponent, mantissa in [1/2, 1): an octave is one exponent
         mantissa, exponent = np.frexp(x)
         row = np.maximum(exponent - self.e0, 0)
         slow = row == 0
@@ -117,6 +118,7 @@ class Rows:
             slope += value
             value *= t
             value += by_power[k]
+        # dt/d ln x = x dt/dx, which is t in the first row and t + 3 in an octave
         return value, slope * np.where(slow, t, t + 3.0)
 
     def fit(self, values: Floats, terms: int = TERMS, rounding: float = _ROUNDING) -> Floats:
@@ -151,9 +153,11 @@ class Rows:
         Returns coefficients of powers of t, (..., rows, 24 powers); from power ``terms`` on they
         are 0.
         """
+        # one term less: integration gives it back
         derivative = self.fit(slopes * self.dlnx_dt, terms - 1)
         powers = np.zeros_like(derivative)
         powers[..., 1:] = derivative[..., :-1] / np.arange(1, TERMS)
+        # values at the nodes of the integral without its constant, by Horner's scheme
         integral = np.zeros_like(values)
         for k in range(TERMS - 1, -1, -1):
             integral = integral * self.t + powers[..., k, None]
@@ -232,6 +236,7 @@ def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
     """
     from ..kernels.law.material_series import Series
 
+    # [..., j, i]: creep modes by relaxation modes, as modes.gap, which is a_i - b_j
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
     e = np.sqrt(modes.E / modes.a)
     t = np.sqrt(modes.J / modes.b)
@@ -387,6 +392,7 @@ class CoupledRows:
             self.slips,
             self.limit,
         )
+        # field by field: a kernel reads all nodes of one field
         planes = np.moveaxis(jets, 2, 0)
         return lock_array(np.concatenate([head, x, self.t, edges.ravel(), planes.ravel()]))
 
@@ -401,6 +407,8 @@ class CoupledRows:
         """
         from scipy.interpolate import CubicSpline
 
+        # 1: a condition on the first derivative; from an end node to its limit fields are linear in
+        # u or 1/u, and the slope over ln u at the node is this difference
         ends = (1, values[1] - values[0]), (1, values[-1] - values[-2])
         found = np.zeros_like(values)
         found[1:-1] = CubicSpline(x, values[1:-1], bc_type=ends)(x, 1)
@@ -412,7 +420,9 @@ class CoupledRows:
         It is mu (Q/mu) times the reduced creepage, less the work of shear on the strains.
         """
         middle, low, high = (edge[:, np.newaxis] for edge in self.edges[:, :3].T)
+        # the creepage at t: from the middle to the onset of its side, by the part w(t) of the way
         creep = middle + np.where(self.t < 0.0, low - middle, high - middle) * grade(self.t)
+        # work_half_space and work_cylinder of FIELDS
         work = self.fields[..., 6] + self.fields[..., 7]
         return np.maximum(self.mu * self.fields[..., 0] * creep - work, 0.0)
 
@@ -426,9 +436,11 @@ class CoupledRows:
 
         if not self.graded:
             slopes = np.moveaxis(_slopes(self.t, np.moveaxis(fields, 1, 0)), 0, 1)
+            # a field that does not depend on creep has slopes of exactly 0, not of rounding
             return np.where(np.ptp(fields, axis=1, keepdims=True) > 0.0, slopes, 0.0)
         middle = int(np.argmin(np.abs(self.t)))
         found = np.zeros_like(fields)
+        # each side by itself: fields have a corner in the middle, which the grading of t makes flat
         for side in (slice(0, middle + 1), slice(middle, None)):
             spline = CubicSpline(self.t[side], fields[:, side], axis=1, bc_type="clamped")
             found[:, side] = spline(self.t[side], 1)

@@ -117,6 +117,8 @@ class _FunctionsOfW:
         for _ in range(_NEWTON_STEPS):
             (value,), (slope,) = self.rows.read(self.powers[[which]], w)
             whole = 1.0 + (1 + which) * value
+            # for both factors the relative change of factor(whole) with ln w is slope/whole, since
+            # the root halves the factor 2 of 2 h/z
             w += (x * factor(whole) - w) / (1.0 - slope / whole)
         values, slopes = self.rows.read(self.powers, w)
         whole = 1.0 + (1 + which) * values[which]
@@ -139,9 +141,11 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     """
     e0 = rows.e0
     mean = float(T_mean.sum())
+    # w = 2 u (1 + 2 h/z)^(1/2) reaches 2 sqrt(alpha) times the largest u; one octave is spare
     w = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(alpha)))
     by_modes = evaluate_by_modes(material, 1.0 / w.x.ravel())
     powers = w.fit_slopes(*(part.reshape(-1, *w.x.shape) for part in by_modes[:2]))
+    # at low speed g/z and h/z are T_mean w/2, with w = t 2^e0
     powers[:2, 0, :2] = [0.0, math.ldexp(0.5 * mean, e0)]
     powers[2:, 0, 0] = T_mean
     functions = _FunctionsOfW(w, powers, by_modes.values)
@@ -169,6 +173,7 @@ def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
     rows = Rows(e0, len(table))
     whole = table.copy()
     (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())
+    # z = lam/(2 u), and infinite at rest
     *N, at_rest = evaluate_by_modes(material, np.append(0.5 * lam / rows.x.ravel(), np.inf)).N
     powers = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
     powers[0, 0] = at_rest
@@ -313,6 +318,7 @@ def law_table(
             material = material.total if material.total.E.size else 1.0
     if coefficients is not None:
         return make_table(material, coefficients)
+    # threads wait for the one that makes a table, in place of making it again
     with _lock:
         return _made(material)
 
@@ -365,8 +371,10 @@ def make_table(
         material.half_space_weights if isinstance(material, Bodies) else np.full(modes.J.size, 0.5)
     )
     W = modes.J * modes.b
+    # terms of W, C and T_mean; for both bodies, the half-space, the cylinder
     terms = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma), modes.J / modes.b
     sums = np.array(
+        # fsum rounds once, whatever the order of the modes
         [[math.fsum(part * term) for term in terms] for part in (1.0, weights, 1.0 - weights)]
     )
     e0 = 0
@@ -375,6 +383,7 @@ def make_table(
         cover = cover or cover_rows(material)
         coefficients = cover.coefficients
         e0 = cover.e0
+        # M/V at rest, power 0 of the first row, of both bodies
         T_mean = float(cover.coefficients[0, 0, 2:4].sum())
     elif modes.a.size:
         refuse_distant_times(modes.b[0], modes.a[-1])
@@ -458,6 +467,7 @@ class LawAxis:
         alpha = check_number("alpha", alpha, low=low, high=high)
         if alpha == 1.0:
             return law_table(1.0)
+        # the highest alpha is the end of the last octave, not the begin of another
         n = min(math.frexp(alpha)[1] - 1 - self.first, len(self.rows) - 1)
         s = 2.0 * (math.log2(alpha / 2.0 ** (n + self.first))) - 1.0
         columns = np.asarray(
@@ -485,12 +495,14 @@ def law_axis(low: float, high: float) -> LawAxis:
     pieces = []
     for octave in octaves:
         tables = tables_of_octave(octave)
+        # T_mean of one relaxation time is (alpha - 1)/alpha, in units of T_epsilon
         c = np.array([table.T_mean for table in tables])[:, None, None, None]
         pieces.append(alpha_terms(to_axis(np.array([table.coefficients for table in tables]), c)))
     rows = tuple(piece.shape[1] for piece in pieces)
     coefficients = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
     for padded, piece in zip(coefficients, pieces, strict=True):
         padded[:, : piece.shape[1]] = piece
+    # the slowest rate of creep is 1/T_epsilon for every alpha, and so e0 is the same
     return LawAxis(lock_array(coefficients), rows, octaves[0], tables[0].e0)
 
 

@@ -109,6 +109,7 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
     Returns indices (n,), int64, by ascending octave of alpha, then of kappa |V|, the states of one
     octave in the order given; an empty array, which stands for the order given, for a single state.
     """
+    # one number by which to sort: 256 is more than the 106 exponents of kappa |V| told apart
     octaves = (256 * _exponents(alpha) + np.clip(_exponents(kappa * V), -5, 100)).astype(np.int16)
     return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
 
@@ -121,6 +122,7 @@ def _exponents(x: Floats) -> Integers:
     x: contiguous doubles, finite.
     Returns integers in the shape of x.
     """
+    # the 11 bits of the exponent, without the sign
     return ((x.view(np.int64) >> 52) & 0x7FF) - 1022
 
 
@@ -153,6 +155,7 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
             refuse_distant_times(block.modes.b.min(), block.modes.a.max())
         packed = pack_materials(block)
         numbers[block.rows, : packed.shape[1]] = packed
+    # columns of pack_materials: the number of rows follows e0, alpha is the first
     row_count = int(numbers[:, z_grid.FIRST_EXPONENT + 1].max(initial=1.0))
     nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max(initial=1.0)))
     workspace = np.empty(material_series.workspace_size(most_modes))
@@ -278,6 +281,8 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     laws = {}
     if many_nu:
         of_nu = _node_weights(np.log(3.0 - 4.0 * covers.nu) / math.log(3.0), _NU_NODES)
+        # in the order of the laws of :func:`_laws_of_octave`: all thicknesses of one nu, then of
+        # the next
         weights = (of_nu[:, :, None] * weights[:, None]).reshape(len(weights), -1)
     for exponent in np.unique(octave).tolist():
         with _lock:
@@ -293,6 +298,7 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
                     "not interpolated"
                 )
                 raise ParameterError("thickness/l0", f"{thin}", reason) from error
+    # for each cover the address of the laws of its octave and their number of rows
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
     rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))

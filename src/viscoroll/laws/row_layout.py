@@ -186,6 +186,7 @@ def align_vector(numbers: Floats) -> Floats:
     Returns the copy, (n,), writable: a view into a longer array.
     """
     room = np.empty(numbers.size + 8)
+    # doubles from the start of the array to the next multiple of 64 bytes
     first = -room.ctypes.data // 8 % 8
     room[first : first + numbers.size] = numbers
     return room[first : first + numbers.size]
@@ -228,6 +229,7 @@ def pack_record(
     from ..kernels.law.law_record import E0, ROW_COUNT, ROW_SIZE, Law
 
     count = len(table)
+    # the limits for u -> infinity of H/F^2, alpha, and of lam, then the fast limit
     front = np.append([alpha, 1.0 / math.sqrt(alpha)], fast_limit)
     L = None
     cover_rows = None
@@ -280,10 +282,13 @@ def _pack_rows(
     for _ in range(2):
         value, slope = _read_press(rows, press, v=2.0 * u / L, alpha=alpha, fast=fast)
         # Newton's method for L^2 press(2 u/L) = 1
+        # Newton's step for L^2 press(2 u/L) - 1, whose slope over L is 2 L A; dL, the slope of its
+        # root over ln u, follows from the same equation
         A = value - 0.5 * slope
         dL = -0.5 * L * slope / A
         L = L - 0.5 * (L * value - 1.0 / L) / A
     lengths = rows.fit_slopes(L.reshape(rows.x.shape), dL.reshape(rows.x.shape))
+    # L at rest: l0 itself on half-spaces
     lengths[0, 0] = 1.0 if cover_L is None else cover_L[0, 0]
     pairs = (lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder)
     return np.concatenate([*(interleave_pairs(*pair) for pair in pairs), press, share], axis=1)
@@ -302,10 +307,12 @@ def _read_press(
     fast: W and C of the fast limit, (2,).
     Returns (values, derivatives), (n,) each, dimensionless.
     """
+    # the last double within the rows, beyond which they cannot be read
     last = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
     (value,), (slope,) = rows.read(press[None], last)
     bracket = fast[1] + fast[0] * np.log(v)
     share = 1.0 - 0.5 * alpha * bracket / v
+    # 2 alpha times the slope of eta/F, as H/F^2 = alpha (eta/F)^2 beyond the rows
     share_slope = alpha**2 * (bracket - fast[0]) / v
     beyond = v > last
     return np.where(beyond, alpha * share**2, value), np.where(beyond, share_slope * share, slope)
@@ -332,17 +339,25 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     """
     N = table[..., FUNCTIONS.index("N")]
     du_dt = np.ldexp(0.25, e0 + np.arange(len(N)))
+    # du/dt of an octave is a quarter of its end, of the first row its whole end; the highest power
+    # of the integral would be one too many and is dropped
     integral = np.zeros_like(N)
     du_dt[0] = math.ldexp(1.0, e0)
     integral[:, 1:] = du_dt[:, None] * N[:, :-1] / np.arange(1.0, TERMS)
+    # integrals from the origin t = 0 to t = 1 and to t = -1
     to_end = integral.sum(axis=1)
     to_begin = integral @ (-1.0) ** np.arange(TERMS)
     to_begin[0] = 0.0  # the first row begins at t = 0
     beyond = (alpha - 1.0) / (16.0 * alpha * math.ldexp(1.0, e0 + len(N) - 1))
+    # the integral over each row, then over all speeds beyond the last
     parts = np.append(to_end - to_begin, beyond)
+    # minus the integral from each origin to infinity: that from the begin of the row, and that from
+    # the origin back to the begin
     from_top = -np.cumsum(parts[::-1])[::-1] - np.append(to_begin, 0.0)
     from_rest = np.append(0.0, np.cumsum(parts))
     from_top[-1] = 0.0
+    # its last but one entry, up to the end of the last row, belongs to no origin and is deleted
+    # below
     from_rest[:-2] = from_rest[:-2] - to_begin
     pairs = np.stack([N, integral], axis=1).reshape(len(N), 2, -1, 2).swapaxes(1, 2)
     return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
@@ -358,6 +373,7 @@ def _pack_cover_front(cover: CoverRows) -> Floats:
     Returns shape (8,), in place of alpha, lam, and W and C of both bodies, of the half-space and of
     the cylinder: 1/L_1^2, L_1, 0, 4 L_1 a; then 0, 8 b for each body.
     """
+    # the limit of L and, after the eight limits, its factor of 1/u
     L, L_slope = cover.limits[[0, _LIMITED]]
     half_space, cylinder = cover.limits[-2:]
     return np.array(
@@ -379,14 +395,19 @@ def _pack_cover(cover: CoverRows) -> Floats:
 
     limits, slopes = cover.limits[: 2 * _LIMITED].reshape(2, _LIMITED)
     L, lam, L_slope, lam_slope = *limits[:2], *slopes[:2]
+    # eta/F for v -> infinity and its factor of 1/v, with 1/u = 2/(L v)
     share = lam / L, 2.0 * (lam_slope * L - lam * L_slope) / L**3
     _, free_base, free, excess_base, excess, *tilts = cover.creep
+    # a body without a layer has f = 0 at all speeds; -1: both have one, and kernels read the
+    # cylinder's
     on_base = free_base.any()
     part = -1.0 if on_base and free.any() else float(not on_base)
     front = [
+        # each limit with its factor of 1/u; L is in the head of the rows (_pack_cover_front)
         *np.stack([limits, slopes], axis=1)[1:].ravel(),
         *share,
         cover.limits[-3],
+        # 2 M u^2/(V L), the form in which kernels take the moment of both bodies
         2.0 * sum(cover.limits[-2:]) / L,
         part,
         *np.zeros(COVER_FRONT_SIZE - CYLINDER_PART - 1),
@@ -441,9 +462,11 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     # a pair stores two powers of one function, then of the other: its functions are taken apart
     pairs = values[..., :BODY_MOMENTS].reshape(nodes, rows, 2, PART_SIZE // 2, 2, 2).swapaxes(3, 4)
     pairs = pairs.reshape(nodes, rows, 4, PART_SIZE)
+    # the second function of each pair is M/V or epsilon, which go to 0 with c
     pairs[:, :, 1::2] /= c[:, None, None, None]
     singles = values[..., H_OVER_F2:].reshape(nodes, rows, 2, PART_SIZE)
     terms = _significant_terms(np.concatenate([pairs, singles], axis=2))
+    # interleaved again, as kernels evaluate pairs
     pairs = terms[:, :, :4].reshape(ALPHA_TERMS, rows, 2, 2, PART_SIZE // 2, 2).swapaxes(3, 4)
     terms = np.concatenate(
         [pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), terms[:, :, 4:]], axis=2
@@ -457,9 +480,13 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     counts = []
     for row in groups:
         first = 0
+        # SHORT: for each function or pair of a row, the groups that each of its blocks usually
+        # needs
         for short in SHORT:
             blocks = row[first : first + len(short)]
             first += len(short)
+            # groups are ordered from the highest degrees: those that a short block leaves out come
+            # first
             needs_all = any(block[: FULL - length].any() for block, length in zip(blocks, short))
             lengths = (FULL,) * len(short) if needs_all else short
             numbers += [block[FULL - length :].ravel() for block, length in zip(blocks, lengths)]
@@ -478,6 +505,7 @@ def _grouped_terms(terms: Floats, size: int) -> Floats:
     Returns a new array of the same shape: the coefficient of T_4g s^i at index 4 g + i.
     """
     terms = terms.copy()
+    # from the highest group down, as each changes the one below it
     for start in range(len(terms) - size, 0, -size):
         for i in range(1, size):  # T_(4g+i) = 2 T_4g T_i - T_(4g-i)
             terms[start - i] -= terms[start + i]
@@ -564,6 +592,7 @@ def pack_materials(block: Block) -> Floats:
     means = [(share * modes.J / modes.b).sum(axis=-1) for share in (weights, 1.0 - weights)]
     e0 = np.zeros(count)
     rows = np.ones(count)
+    # elastic ones: one row from e0 = 0, without modes
     mode_count = np.full(count, modes.a.shape[-1])
     if modes.a.shape[-1]:
         e0, rows = row_range(modes.b[:, 0], modes.a[:, -1])

@@ -105,6 +105,7 @@ class Bodies(OneOrMany):
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
             raise shape_error("share", share.shape, "a number, or one for each pair, (n,)")
+        # arrays for their shapes alone
         many = {name: np.empty(body.shape) for name, body in bodies.items()}
         object.__setattr__(self, "shape", broadcast_shape(**many, share=share))
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
@@ -152,6 +153,7 @@ class Bodies(OneOrMany):
         """
         share = np.asarray(self.share)[..., np.newaxis]
         parts = share * self.cylinder.J, (1.0 - share) * self.base.J
+        # the half-space's part of each strength: none of the cylinder's modes, all of the base's
         bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.base.T)
         own, J, T = (
             np.concatenate(
@@ -211,6 +213,7 @@ class Bodies(OneOrMany):
         J = self.total.J
         if self._same:
             return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
+        # the series leaves out the last modes, which have no strength
         own = self._creep[2][..., : J.shape[-1]]
         weights = np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
         return weights
@@ -424,6 +427,7 @@ class Cover(Bodies):
         values["other_thickness"] = other_thickness
         self.__dict__.update(values, thickness=read_only(given), nu=read_only(ratio))
         super().__post_init__()
+        # of the series and the share, which are single, the shape would be ()
         self.__dict__["shape"] = given.shape
 
     @staticmethod

@@ -343,7 +343,7 @@ def material_as_dataset(material: Any) -> Dataset:
     held |= {name: getattr(series, name) for names in _FORMS.values() for name in names}
     data = {
         name: (
-            ("rate" if name in _ERRORS else "mode",) * np.ndim(value),
+            ("rate" if name in _ERRORS else "mode",) * np.ndim(value),  # () of a number
             value,
             dict(zip(("long_name", "units"), _MEANING[name], strict=True)),
         )

@@ -298,7 +298,7 @@ class FromPrograms:
         resting = rates == 0.0
         rest = _long_time_shear(strengths, G0, G_inf, strengths[resting])
         strengths = strengths[~resting]
-        times = 1.0 / rates[~resting]
+        times = 1.0 / rates[~resting]  # beta = 0 is the long-time modulus, no mode
         terms = None if K is None else check_pairs("K", K, "beta", rates, above=-math.inf)[0]
         if terms is not None:
             if terms[resting].any():
@@ -310,6 +310,7 @@ class FromPrograms:
         if bulk is not None:
             bulk = check_number("bulk", bulk, unit=SI, above=0.0)
             nu = _poisson(rest, bulk)
+            # a bulk modulus that does not relax
             terms = np.zeros_like(strengths) if terms is None else terms
         return cls._from_moduli(
             rest, check_poisson(nu), G=strengths, tau=times, K=terms, more=more, K_inf=bulk
@@ -440,6 +441,7 @@ def _warn_of_low_poisson(G_inf: float, G: Floats, K_inf: float, K: Floats, tau: 
     G_inf, G, K_inf, K, tau: as in :func:`plane_strain`.
     Times that are examined: 0, infinity, and 0.1, 1 and 10 times each of tau.
     """
+    # rows: what is left of each term at each of the times, and nothing at infinity
     ratio = np.outer((0.0, 0.1, 1.0, 10.0), tau).reshape(-1, 1) / tau
     left = np.vstack([np.exp(-ratio), np.zeros_like(tau)])
     lowest = np.min(_poisson(G_inf + left @ G, K_inf + left @ K))
@@ -544,6 +546,7 @@ def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArra
     stiff = 3.0 * K_inf + G_inf
     first = Prony(G / G_inf, tau)
     second = Prony((3.0 * K + G) / stiff, tau)
+    # long-time compliances of the two materials in series
     soft = 0.25 / G_inf
     hard = 0.75 / stiff
     return Bodies(first, second, soft / (soft + hard)).total

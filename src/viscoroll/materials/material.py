@@ -382,6 +382,7 @@ class Material(FromPrograms):
         >>> float(rubber.loss(100.0))
         3000000.0
         """
+        # a rigid body has no loss, which infinite E times 0 would make NaN
         return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
@@ -442,6 +443,7 @@ class Material(FromPrograms):
         >>> rubber.relaxation([0.0, 1.0])
         array([9000000., 3000000.])
         """
+        # [()] makes a number of an array without axes
         decay = np.exp(-self._divide_time(t, self.prony.tau))
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
@@ -606,6 +608,7 @@ class Material(FromPrograms):
             product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (
                 self.T_ref * self.prony.tau
             )
+        # with z > 1 by 1/z, so that z^2 cannot overflow: z^2/(1 + z^2) = 1/(1 + 1/z^2)
         fast = product > 1.0
         ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
         whole = 1.0 + ratio * ratio

@@ -346,6 +346,7 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
         for key in ("name", "density", "thickness", "measured", "nu_instant")
     }
     reference = section.reference
+    # None, not given, stays; so does 0 degrees Celsius, which needs no check
     more["temperature"] = reference and check_number("reference", reference, above=ABSOLUTE_ZERO)
     series = parse_series(
         path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep})
@@ -384,6 +385,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
         )
     for key, lists in forms.items():
         columns = {
+            # numbers of one mode may be arrays (n,), of n materials: modes become the last axis
             column: np.stack(np.broadcast_arrays(*value), axis=-1)
             if isinstance(value, list) and value
             else value

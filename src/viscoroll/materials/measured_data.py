@@ -276,6 +276,7 @@ class ShiftFactors:
         from scipy.optimize import least_squares
 
         above, logs = self._points(3)
+        # C2 must exceed it, so that C2 + T - T0 is > 0 at the lowest temperature
         gap = max(0.0, float(-above.min()))
 
         def constants(free: Any) -> Any:
@@ -289,6 +290,7 @@ class ShiftFactors:
             return -C1 * above / (C2 + above) - logs
 
         low, high = np.log(_GAP)
+        # C1/C2 is the slope of -log10 a_T at T0, here the mean slope over the temperatures
         start = math.log((logs[0] - logs[-1]) / (above[-1] - above[0])), 0.5 * (low + high)
         found = least_squares(
             errors, start, bounds=([-np.inf, low], [np.inf, high]), xtol=1e-12, ftol=1e-12
@@ -643,6 +645,7 @@ class Measured:
             return np.full(rates.shape, np.nan)
         at, error = np.transpose(self.M_error)
         inside = (rates >= low) & (rates <= high)
+        # ``low`` in place of rates outside, whose logarithm may be infinite
         found = np.interp(np.log(np.where(inside, rates, low)), np.log(at), error)
         return np.where(inside, found, np.inf)
 

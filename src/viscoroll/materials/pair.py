@@ -148,6 +148,7 @@ class Pair:
         one, other = self._moduli
         if self.like:
             return one
+        # divided by the stiffer one, which may be infinite
         softer = np.minimum(one, other)
         stiffer = np.maximum(one, other)
         found = 2.0 * softer / (1.0 + softer / stiffer)
@@ -250,10 +251,12 @@ class Pair:
                 "make the other body rigid (E = inf)"
             )
             raise described_error("E or nu of a body", found, allowed)
+        # both in the unit of time of the pair
         series, other_series = (
             body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other)
         )
         part = float(np.max(parts))
+        # beside a rigid body the layer has all of the compliance
         more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}
         if other.thickness is not None and part < 1.0:
             more["other_thickness"] = np.broadcast_to(
@@ -329,6 +332,7 @@ def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "stra
     k_1, k_2 = (
         3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2)
     )
+    # over the larger one, which may be infinite: inf/inf would be NaN
     largest = max(G_1, G_2)
     g_1, g_2 = (1.0 if G == largest else G / largest for G in (G_1, G_2))
     return (g_1 * (k_2 - 1.0) - g_2 * (k_1 - 1.0)) / (g_1 * (k_2 + 1.0) + g_2 * (k_1 + 1.0))

@@ -357,6 +357,7 @@ class Prony(OneOrMany):
         if not self.shape:
             strengths, rates = (getattr(self.modes, name) for name in names)
         else:
+            # a material with fewer modes than others keeps strength 0 and rate 1 behind its own
             strengths = np.zeros(self._strengths.shape)
             rates = np.ones(self._strengths.shape)
             for rows, modes, _ in self.blocks(np.arange(len(self))):
@@ -405,6 +406,7 @@ class Prony(OneOrMany):
         Rolling is slow, M nearly proportional to V, where kappa V is far below its inverse, with V
         in units of R/T_ref.  It is 1.0 for elastic materials.
         """
+        # 1 where nothing relaxes, which makes 0/0 there 1/1
         elastic = self.T_mean == 0.0
         return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2) + elastic) / (
             self.T_mean + elastic
@@ -440,6 +442,7 @@ class Prony(OneOrMany):
         broadcast_shape(factor=factors, materials=np.empty(self.shape))
         times = self._times * factors[..., np.newaxis]
         if self.by_creep:
+            # with alpha, which 1 - sum J would give with fewer digits
             return Prony.creep(
                 self._strengths, times, alpha=np.broadcast_to(self.alpha, times.shape[:-1])
             )
@@ -537,6 +540,7 @@ def _check_modes(
     if wide.any():
         ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
         raise ParameterError(names[1], ends, f"within a factor of {LARGEST_TIME_RATIO:g}")
+    # modes without strength are last (sort_modes); those that no material has are cut off
     return values[..., :most], each[..., :most]
 
 
@@ -558,6 +562,7 @@ def series_of_alpha(alpha: float) -> Prony:
         c = c[:0]
         one = one[:0]
     series = Prony._make(True, c, one, alpha)
+    # takes the place of the cached property, which would convert the series
     series.modes = Modes(
         alpha=alpha, a=alpha * one, b=1.0 * one, E=alpha * c, J=c, gap=(alpha * c)[:, np.newaxis]
     )
@@ -578,6 +583,7 @@ def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floa
         np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts)
     )
     for n in range(each.shape[-1] - 1):
+        # of equal times each passes its strength on to the next, so that the last one has the sum
         equal = each[..., n] == each[..., n + 1]
         for given in (values, *rest) if equal.any() else ():
             given[..., n + 1] += np.where(equal, given[..., n], 0.0)

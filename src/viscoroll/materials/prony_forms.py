@@ -81,6 +81,7 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     gaps = zeros_from_poles(
         spread, np.concatenate([np.ones((*E.shape[:-1], 1)), E], axis=-1), np.zeros(())
     )
+    # zero j less pole: of the pole at 0 that is b_j, of the others b_j - a_i, at [i, j]
     b = gaps[..., 0, :].copy()
     gap = np.ascontiguousarray(np.swapaxes(-gaps[..., 1:, :], -1, -2))
     return Modes(alpha=alpha, a=a, b=b, E=E, J=_strengths(gap, alpha)[0] / b, gap=gap)
@@ -149,6 +150,7 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
     origin = np.where(in_left, left, left + 1)
     side = np.where(in_left, 1.0, -1.0)
     seen = _relative_poles(origin, spread)
+    # the sum increases from pole to pole: beyond the zero it is > 0 right of a pole, < 0 left of it
     low = np.log(np.maximum(half * _CLOSEST, 5e-324))
     high = np.log(half)
     for _ in range(_HALVINGS):

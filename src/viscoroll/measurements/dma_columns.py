@@ -126,6 +126,7 @@ def _quantity(name: str) -> tuple[str, str] | None:
     kinds = {kind for part in parts for kind in _KINDS[part].split()}
     modes = kinds & {"tension", "shear"}
     named = frozenset(kinds - modes - {"-"})
+    # of "storage modulus" the first word alone tells what it is
     quantity = _NAMED_BY.get(named) or _NAMED_BY.get(named - {"modulus"})
     if quantity is None or len(modes) > 1:
         return None
@@ -345,7 +346,9 @@ def _contradiction(meaning: Meaning, heading: str, overruling: Mapping[str, str]
         return (
             f"an angular frequency in {unit}: rename it {plain!r}, or give units={{{name!r}: ...}}"
         )
-    angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
+    # tan delta must not be in an angle and a phase angle must be, since pint converts the one to
+    # the other; None of other quantities
+    angle = {"1": False, "rad": True}.get(UNITS[name])
     return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
 
 
@@ -379,10 +382,11 @@ def numbers_of(table: Table, column: Column) -> Numbers:
         raise FileError(table.path, problem)
     if column.log:
         values = column.log**values
+        # the derivative of log^x is log^x ln(log): half a digit of x, carried to first order
         half = values * math.log(column.log) * half
     factor, offset = conversion(unit, UNITS[name])
     if column.quantity.endswith("frequency") and "angular" not in name and not CYCLES.search(unit):
-        factor *= 2.0 * math.pi
+        factor *= 2.0 * math.pi  # 1/s of a frequency are cycles, which pint takes for radians
     values = factor * values + offset
     half = factor * half
     if name in _RANGES:
@@ -391,6 +395,7 @@ def numbers_of(table: Table, column: Column) -> Numbers:
             (values > low) & (values < high), f"the {name} is not {words}: remove the row"
         )
     return (
+        # the derivative of the tangent is 1/cos^2
         Numbers(np.tan(values), half / np.cos(values) ** 2)
         if name == "phase angle"
         else Numbers(values, half)

@@ -210,9 +210,10 @@ def read_relaxation(
         each.heading: "not needed" for name in alike.keys() - {*used} for each in alike[name]
     }
     numbers = {name: agreeing_numbers(table, name, alike[name], others).values for name in used}
-    for name in used[: 1 + len(pair)]:
+    for name in used[: 1 + len(pair)]:  # all but the temperature
         holds = (numbers[name] > 0.0) & (numbers[name] < np.inf)
         table.require(holds, f"the {name} is not > 0 and finite: remove the row")
+    # a strain is in use only beside a stress
     relaxation = numbers[pair[0]] / numbers.get("strain", 1.0)
     refuse_repeats(table, "time", numbers["time"], relaxation)
     temperature = numbers.get("temperature")
@@ -346,6 +347,7 @@ def read_dma(
     mode, pair, columns_of_quantity = _choose_columns(table, found, others)
     mode, assumed = source.mode(mode)
     notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1) + assumed
+    # read at the end, since a strain that cannot be read is left out, while others are refused
     strains = columns_of_quantity.pop("strain", [])
     numbers = {
         quantity: agreeing_numbers(table, quantity, alike, others)
@@ -357,6 +359,7 @@ def read_dma(
         refuse_unread_temperatures(table, others)
         temperature = temperatures_of_lines(table)
         notes += ["temperatures are those of lines above the rows"] * (temperature is not None)
+    # those of the tests, not of the master curve, whose reference no column states
     elif temperature is not None and reduced and np.ptp(temperature) > SAME_TEMPERATURE:
         temperature = None
         others[columns_of_quantity.pop("temperature")[0].heading] = (
@@ -369,9 +372,11 @@ def read_dma(
     sources = [columns_of_quantity[name][0].name for name in pair]
     if any(UNITS[name] == "1/Pa" for name in sources):
         with np.errstate(all="ignore"):  # what is not finite is refused
+            # compliance J' - i J'' and modulus E' + i E'' are inverse
             square = storage**2 + loss**2
             storage = storage / square
             loss = loss / square
+    # the decades of a modulus are below 10, and those of a low frequency negative
     logs = omega.min() < 0.0 or storage.max() < SOFTEST
     advice = "are these logarithms? write log before their headings" if logs else "remove the row"
     for name, values in {
@@ -488,6 +493,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     )
     if quantities & {"frequency", "reduced frequency"}:
         problem = "fewer than two columns were found of storage, loss, tan delta and modulus"
+        # without compliances first, then without moduli
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
             columns: dict[str, list[Column]] = {}
             unused = {}
@@ -520,6 +526,7 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     """
     omega = record.omega
     n = record.omega.size
+    # a single row may be one of a sweep that the user cut
     if n > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
         problem = (
             f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "

@@ -254,11 +254,13 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     for n, centre in enumerate(x):
         distance = np.abs(x - centre)
         near = distance <= max(_WINDOW, np.partition(distance, nearest)[nearest])
+        # log is ln E' of the line at the point itself
         slope, log = (
             np.polyfit(x[near] - centre, y[near], 1)
             if np.ptp(x[near]) > _APART
             else (math.nan, 0.0)
         )
+        # E'' = pi/2 dE'/d ln(omega), with dE' = E' d ln(E')
         allowed = 0.5 * math.pi * slope * math.exp(log)
         ratio[n] = (
             curve.loss[n] / allowed

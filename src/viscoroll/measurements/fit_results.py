@@ -101,7 +101,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     found = fit.admissible
     ends = ", ".join(
         f"+-{found.error[n]:.2%}"
-        for n in ((0, found.rate.size // 2, -1) if found.rate.size else ())
+        for n in ((0, found.rate.size // 2, -1) if found.rate.size else ())  # rates ascend
     )
     where = "at the lowest, middle and highest speed inside the measured band"
     yield "accuracy", f"M: {ends or 'no speed'}, {where}, by all spectra that meet the data as well"
@@ -415,6 +415,7 @@ class SeriesFit(Result):
         E = self.E
         measured = self.measured
         if self.mode == "shear":
+            # checked here, before Material refuses it, so that E is not made with a wrong one
             factor = 2.0 * (1.0 + check_poisson(nu))
             E *= factor
             measured = replace(
@@ -478,6 +479,7 @@ class SeriesFit(Result):
         lam = contact(
             cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam"
         ).lam
+        # times of a material at another temperature are a_T = T_ref/T_ref of the fit times as long
         seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return assess_measured_band(seen, {"the material": self.measured})
 
@@ -490,6 +492,7 @@ class SeriesFit(Result):
         NaN.
         """
         points = np.asarray(x, np.float64)
+        # the spectrum reads omega or t of the data, not the moduli
         data = self.data._replace(**{self.data._fields[0]: points.ravel()})
         return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 

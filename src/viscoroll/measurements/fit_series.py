@@ -314,7 +314,7 @@ def fit_relaxation(
             "relaxation", None, "given with t, or replaced by a record of read_relaxation"
         )
     curve = data_of(Relaxation, t, relaxation)
-    first, *_, last = curve.relaxation.tolist()
+    first, *_, last = curve.relaxation.tolist()  # data_of has sorted them by time
     if last > _RISES * first:
         found = f"rises with time from {first:g} to {last:g}"
         raise described_error(
@@ -367,7 +367,7 @@ def _fit_series(
         span = f"from {data[0][0]:g} to {data[0][-1]:g}"
         raise ParameterError(data._fields[0], span, f"within a factor of {MOST_SPREAD:g}")
     spectrum, grid, reached = fewest_modes(data, target, modes)
-    T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0
+    T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0  # the longest comes first
     prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)
     fields = {
         "E": spectrum.E,
@@ -378,6 +378,7 @@ def _fit_series(
         "grid": grid,
         "band": (low, high),
         "points": curve[0].size,
+        # a time belongs to the rate that is its inverse
         "outside": (spectrum.tau < 1.0 / high) | (spectrum.tau > 1.0 / low),
     }
     return data, fields | data._asdict(), misfits(data, spectrum_of(prony, spectrum.E, T_ref))
@@ -451,6 +452,7 @@ def fit_at_strain(
         return fit_prony(sets[0], **options)
     strain = math.exp(np.mean([math.log(each.mean_strain) for each in sets]))
     for _ in range(_FITS):
+        # moduli at the strain, the material of them, and the strain of its contact at that speed
         fit = fit_prony(_at_strain(sets, strain), **options)
         body = fit.material(cylinder.material.nu)
         own = {
@@ -483,7 +485,9 @@ def _sets_of(records: Sequence[DynamicModuli]) -> list[Any]:
                 "records", f"have no strain ({record.source})", "with the strain of each point"
             )
         order = np.argsort(strains := np.asarray(record.strain), kind="stable")
+        # cut behind each strain that the next one exceeds by more than the gap
         parts = np.split(order, np.flatnonzero(np.diff(np.log(strains[order])) > _GAP) + 1)
+        # sorted indices: points stay in the order of the record
         found += [record] if len(parts) == 1 else [_points(record, np.sort(part)) for part in parts]
     return sorted(found, key=lambda each: each.mean_strain)
 
@@ -507,6 +511,7 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
     Returns a :class:`DynamicModuli`, whose ``source`` names the sets.
     """
     strains = np.array([each.mean_strain for each in sets])
+    # sets n - 1 and n are the neighbours, beyond the ends the two nearest
     n = int(np.searchsorted(strains, strain).clip(1, strains.size - 1))
     part = math.log(strain / strains[n - 1]) / math.log(strains[n] / strains[n - 1])
     less, more = sets[n - 1 : n + 1]

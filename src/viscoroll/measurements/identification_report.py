@@ -102,6 +102,7 @@ def _noise(fit: Any) -> Iterator[str]:
                 f"or {_INADEQUATE}"
             )
             continue
+        # allowed is 3/sqrt(points)
         points = 9.0 / allowed**2
         yield (
             f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most "
@@ -143,6 +144,7 @@ def _limits(fit: Any) -> Iterator[str]:
     yield from _phases(fit)
     loose = {*fit.does_not_act, *fit.undetermined}
     names = list(fit.values)
+    # below the diagonal: each pair once
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
         if not {names[i], names[k]} <= loose:
             yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"
@@ -165,6 +167,7 @@ def _products(fit: Any) -> str:
     )
     if not found:
         return "the data determine no product of their powers"
+    # of those that stand first in the sentence: near is False of the sure ones
     limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
     verb = "are" if " and " in (sure or near) else "is"
     text = f"only {sure or near} {verb} {'bounded within the ranges' if limited else 'determined'}"

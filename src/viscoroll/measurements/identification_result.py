@@ -135,6 +135,7 @@ class Identification(Result):
             name for i, name in enumerate(self.values) if i not in problem.active
         )
         self.correlations = self._likelihood.correlations
+        # d value/d coordinate, by which standard deviations of coordinates become those of values
         slopes = np.array(
             [unknown.slope(self.values[unknown.name]) for unknown in problem.unknowns]
         )
@@ -388,6 +389,7 @@ class Identification(Result):
             predictions = [predict(point) for point in (inside if len(inside) else [u])]
             low, high = np.nanquantile(predictions, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
         else:
+            # slopes() has its axes in reverse order: here (unknowns, quantities, *shape of points)
             J = problem.slopes(predict, u, range(u.size)).T
             half = factor * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
             low = value - half

@@ -163,6 +163,7 @@ def identify(
     problem = Problem(
         cylinder, unknowns, records=records, robust=check_bool("robust", robust), shifts=shifts
     )
+    # a standard deviation that is estimated needs one degree of freedom
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
         allowed = (
@@ -210,6 +211,7 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
             raise ParameterError(
                 "data", f"{record!r:.60}", "a list of Resistance, Traction and Coastdown"
             )
+        # records of the same kind before that were given no name either
         alike = sum(type(other) is type(record) and not other.name for other in found.values())
         name = record.name or (f"{record.LABEL} {alike + 1}" if alike else record.LABEL)
         if name in found:
@@ -405,7 +407,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     >>> vr.identify(**read_measurements(vr.datasets.path("measured.toml")))  # doctest: +SKIP
     """
     cylinder = read_roller(path, tuple(_SECTIONS))
-    content = {"prior": {}} | read_toml(path)
+    content = {"prior": {}} | read_toml(path)  # the one section that may be missing
     if not isinstance(cylinder, Cylinder):
         raise section_error(path, "", "scene", "measurements are in SI units: give [cylinder]")
     for section, kind in _SECTIONS.items():
@@ -450,6 +452,7 @@ def _record(path: Path, content: Any, number: int) -> Record:
     fields = (
         field for field in dataclasses.fields(kind) if field.init and field.name not in columns
     )
+    # fields of any type: the record checks their values
     own = [(field.name, Any, field.default) for field in fields]
     section: Any = as_struct(path, header, content, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):

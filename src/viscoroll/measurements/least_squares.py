@@ -175,6 +175,7 @@ class Problem:
         sigma = []
         size = 0
         for record_name, record in records.items():
+            # a plan has the predictions at the start for data
             values = (
                 vars(record) if record.measured else self.predicted(record, self.start, record_name)
             )
@@ -208,6 +209,7 @@ class Problem:
         others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (4, middle.size))
         idle = [*range(middle.size)]
         for u in (self.start, *others):
+            # those that have acted at an earlier point are not tried again
             J = self.slopes(self.residuals, u, idle)
             idle = [
                 i for i, column in zip(idle, J.T, strict=True) if np.linalg.norm(column) < _INACTIVE
@@ -309,6 +311,7 @@ class Problem:
             up = u.copy()
             down = u.copy()
             up[i] = min(u[i] + step, max(self.high[i], u[i]))
+            # to both sides, or where the upper end of the range cuts the step, downwards too
             if step == _STEP or up[i] < u[i] + step:
                 down[i] = max(u[i] - step, min(self.low[i], u[i]))
             columns.append((function(up) - function(down)) / (up[i] - down[i]))
@@ -374,6 +377,7 @@ class Problem:
         powers = np.zeros_like(u) if fixed is None else fixed
         single = np.count_nonzero(powers) == 1
         free = [i for i in self.active if not (single and powers[i])]
+        # one more row of the residuals and their derivatives, or none
         rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
         whole = np.clip(u, self.low, self.high)
 
@@ -439,6 +443,7 @@ class Problem:
                     else np.sqrt(np.mean(own**2) / share)
                 )
                 floor = _LEAST_SIGMA * _largest(self.y[column.at])
+                # residuals are divided by the present sigma
                 self.sigma[column.at] = np.maximum(self.sigma[column.at] * size, floor)
             best = self.minimize(best.u)
             if np.abs(self.sigma / before - 1.0).max() < _SIGMA_CHANGE:
@@ -459,6 +464,7 @@ class Problem:
         r = self.residuals(u)
         for column in self.columns:
             record = self.records[column.record]
+            # lexsort sorts by its last key first: the first coordinate
             part = r[column.at][
                 np.lexsort(
                     [np.ravel(getattr(record, name)) for name in reversed(record.COORDINATES)]

@@ -83,6 +83,7 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         sizes, *others = ([np.size(curve) for curve in column] for column in columns)
         for name, other in zip(Curve._fields[1:], others, strict=True):
+            # a curve that one of the lists lacks counts as one without points
             for n, (own, wanted) in enumerate(zip_longest(other, sizes, fillvalue=0), 1):
                 if own != wanted:
                     raise described_error(
@@ -209,6 +210,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
         )
         raise shape_error("shift", factors.shape, allowed)
     found = np.empty(temperatures.size)
+    # of several curves of a set the last factor stays, with which all are compared
     found[sets.of_curve] = factors
     if (found[sets.of_curve] != factors).any():
         raise described_error(
@@ -346,6 +348,8 @@ def master_curve(
     )
     base = None if reference is None else check_celsius("reference", reference)
     coldest = float(temperatures[0])
+    # relative to the coldest curve, as the reference may not be known yet; at the end to the
+    # reference
     if vertical_shift is not None:
         b_T = np.array(
             [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
@@ -375,6 +379,7 @@ def master_curve(
         found = ShiftFactors(
             temperature=tuple(temperatures.tolist()), a_T=tuple(np.exp(logs).tolist()), T0=base
         )
+        # relative to the coldest curve so far, now to the reference, which may lie between curves
         factor = np.exp(logs) / (found(base) if logs.size > 1 else 1.0)
     shifts = Shifts(
         temperature=tuple(temperatures.tolist()),
@@ -473,6 +478,7 @@ def _shifts_by_overlap(
             "overlaps better decides"
         )
         warn_of_model(text + ': compare with on="storage"')
+    # reshaped, since found is empty of a single curve
     steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
     return np.append(0.0, np.cumsum(steps)), mismatch, freedom
 
@@ -502,6 +508,7 @@ class _LogCurve:
         self.x, which = np.unique(np.log(curve.omega), return_inverse=True)
         count = np.bincount(which)
         columns = curve[1:2] if on == "storage" else curve[1:]
+        # the mean of the logarithms at each frequency, (frequencies, moduli)
         self.y = np.stack(
             [np.bincount(which, np.log(column)) / count for column in columns], axis=1
         )
@@ -578,6 +585,7 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
         method="bounded",
         options={"xatol": 1e-9},
     ).x
+    # worse than the best step of the search, or NaN, as beside the last overlap
     if not cost(found := _mismatch(step, cold, warm)) < cost(squares[best]):
         step = steps[best]
         found = squares[best]
@@ -615,6 +623,7 @@ def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> Floats:
     short = high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0])
     if short or of_warm.sum() + of_cold.sum() < _POINTS:
         return np.full(cold.y.shape[1], math.nan)
+    # both ways, since either curve may have the finer points
     at_warm = warm.y[of_warm] - cold.interpolate(warm.x[of_warm] + step)
     at_cold = cold.y[of_cold] - warm.interpolate(cold.x[of_cold] - step)
     difference = np.concatenate([at_warm, at_cold])

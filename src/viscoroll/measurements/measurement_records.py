@@ -125,6 +125,7 @@ class Record:
             )
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
+        # by ``vars``, as the class is frozen
         vars(self).update(whole, labels=labels, sigma=sigmas)
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
@@ -564,6 +565,7 @@ class Coastdown(Record):
             data = R * np.asarray(self.omega)
         if data is None and name == "V0" and self.x is not None:
             some = slice(0, max(3, np.size(self.t) // 10))
+            # [:1]: the slope, before the constant
             data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
         if data is None:
             raise ParameterError(self.label(name), None, "a number: the data do not determine it")

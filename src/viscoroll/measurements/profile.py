@@ -149,6 +149,8 @@ class Likelihood:
         self.points = float((1.0 / repeats).sum())
         within = np.diag(12.0 / (problem.high - problem.low) ** 2)
         self._cov = np.linalg.inv(J.T @ J + within)
+        # the estimate has the weights of _cov, while the variance of each point is larger by its
+        # repeats: the covariance of a linear estimate with other weights than the best ones
         self.cov = self._cov @ ((J.T * repeats) @ J + within) @ self._cov
         self.sd = np.sqrt(np.diag(self.cov))
         self.correlations = self.cov / np.outer(self.sd, self.sd)
@@ -161,6 +163,7 @@ class Likelihood:
         self._profiles = cache(
             lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile()
         )
+        # coordinates and powers are given as bytes, which a cache can compare
         self.minimize = cache(
             lambda u, powers: problem.minimize(
                 np.frombuffer(u), np.frombuffer(powers), _TOLERANCE, _EVALUATIONS
@@ -201,6 +204,7 @@ class Likelihood:
         coordinate, in ascending order of the indices; unknowns that do not act are not in it, so
         that it is {} where none acts.
         """
+        # a row of the unit matrix: the combination of one coordinate alone
         found = {
             i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active
         }
@@ -209,7 +213,7 @@ class Likelihood:
         for i, profile in found.items():
             along = profile.within[:, i]
             self.ends += [profile.within[np.argmin(along)], profile.within[np.argmax(along)]]
-        self._profiles.cache_clear()
+        self._profiles.cache_clear()  # they were made without the starts in ends
         return self.axes(delta_chi2)
 
     def undetermined(self, delta_chi2: float) -> list[int]:
@@ -228,12 +232,14 @@ class Likelihood:
         wide = []
         for i, profile in self.axes(delta_chi2).items():
             bounds = self.problem.low[i], self.problem.high[i]
+            # an open side reaches to the end of the range
             low, high = (
                 bound if end is None else end
                 for end, bound in zip(profile.ends, bounds, strict=True)
             )
             if high - low > min(_WIDE, 0.5 * (bounds[1] - bounds[0])):
                 wide.append(i)
+        # the wide ones themselves too, whose correlation with themselves is 1
         return [
             i for i in self.problem.active if (np.abs(self.correlations[i, wide]) > _TOGETHER).any()
         ]
@@ -301,6 +307,8 @@ class Likelihood:
                 for unknown, p in zip(self.problem.unknowns, powers.tolist(), strict=True)
                 if p
             }
+            # low and high are factors of this value: the combination is ln(product) but for a
+            # constant, to first order where a coordinate is no logarithm
             value = math.prod(abs(values[name]) ** p for name, p in exponents.items())
             found.append(
                 Product(
@@ -334,6 +342,7 @@ class Likelihood:
         """
         axes = self.axes(delta_chi2)
         within = np.concatenate([axes[i].within for i in which])[:, which]
+        # rows from the least singular value on: along these the points differ least
         for v in np.linalg.svd(within - within.mean(axis=0))[2][::-1]:
             exact = v / v[np.argmax(np.abs(v))]
             rounded = (np.round(exact * parts) / parts for parts in _PARTS)
@@ -350,6 +359,7 @@ class Likelihood:
         (unknowns,), rounded to 0.01, that of largest absolute value 1, and those of unknowns
         outside of ``which`` 0.
         """
+        # columns by rising eigenvalue: that of the least variance first
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
 
@@ -452,6 +462,7 @@ class ProfileWalk:
         limits = []
         pieces = False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
+            # the corner of the ranges at which the combination is least, then largest
             reach = self.distance(np.where(self.powers > 0.0, near, far))
             d, last = self.find_end(reach, self.best)
             for _ in range(_BRANCHES):
@@ -526,7 +537,9 @@ class ProfileWalk:
             fa = f
             d = a + math.copysign(min(step, abs(reach - a)), reach)
             f = excess(d)
-            rise = max(f - fa, -0.35 * f)  # at most three times the step
+            # the next step goes 5 % beyond the zero of the line through both points, but is at most
+            # three times and at least 0.3 times this one
+            rise = max(f - fa, -0.35 * f)
             step = min(max(-1.05 * f / rise, 0.3) * step, _LONGEST_STEP)
         end = brentq(excess, a, d, xtol=_CLOSE * min(self.sd, 1.0))
         return end, found[min(found, key=lambda d: abs(d - end))]
@@ -554,6 +567,7 @@ class ProfileWalk:
             (u, _BEYOND[:1]) for u in self.likelihood.ends
         ]
         for u, parts in starts:
+            # own too, if it lies beyond d, on the side of reach
             own = self.distance(u)
             for target in [d + part * (reach - d) for part in parts] + [own] * (
                 (own - d) * (reach - d) > 0.0
@@ -586,6 +600,9 @@ class ProfileWalk:
             return []
         (r, J) = problem.weighted(u)
         others = [i for i in problem.active if i not in (*at, follows)]
+        # slopes while the combination stays: ``follows`` changes by -powers/powers[follows]; then
+        # the part of the slope of each bound that the free unknowns cannot make, along which chi2
+        # falls by the square of the residuals' component
         J = J - np.outer(J[:, follows], self.powers / self.powers[follows])
         own = J[:, at] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, at], rcond=None)[0]
         gains = (r @ own) ** 2 / np.maximum((own**2).sum(axis=0), 1e-300)

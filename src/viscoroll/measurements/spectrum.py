@@ -112,6 +112,7 @@ def _residuals(data: Data, values: Floats) -> Floats:
     s; (1 + 2 modes,).
     Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
     """
+    # 1 + 2 modes numbers
     count = values.size // 2
     return (
         _relative_columns(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count]
@@ -157,6 +158,7 @@ class LeastSquares:
         self.floor = _least_modulus(data)
         self.size = np.sqrt((columns * columns).sum(axis=0))
         self.left = columns / self.size
+        # relative moduli are to be 1; the least long-time modulus gives a part of each already
         self.right = 1.0 - self.floor * columns[:, 0]
 
     def solve(self, row: Floats | None = None, value: float = 0.0) -> Floats:
@@ -188,6 +190,7 @@ class LeastSquares:
 
         most : largest number of modes; the weakest ones beyond are left out.
         """
+        # an unknown is the norm of the relative moduli that a mode gives: by it modes are weak
         order = np.argsort(-self.tau, kind="stable")
         part = unknowns[1:][order]
         order = order[
@@ -243,12 +246,14 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     count = spectrum.tau.size
     if not count:
         return spectrum
+    # unknowns: logarithms of E, of count strengths, of count times
     start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
     low = start - _RANGE
     high = start + _RANGE
     low[0] = np.log(_least_modulus(data))
     high[0] = np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
+    # only the times are kept: strengths on given times have one best fit, which may leave modes out
     return on_times(
         data, np.exp(_minimize(data, start, low=low, high=high, calls=calls)[1 + count :])
     )
@@ -290,10 +295,12 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
     damping = _DAMPING
     for _ in range(calls - 1):
         downhill = -(slopes.T @ errors)
+        # not those at a bound that the step would cross
         free = ~((logs <= low) & (downhill < 0.0) | (logs >= high) & (downhill > 0.0))
         if not free.any():
             break
         normal = _normal_matrix(slopes[:, free])
+        # tiny: the diagonal of a mode that has no effect is 0, and the matrix would be singular
         np.fill_diagonal(normal, (1.0 + damping) * normal.diagonal() + np.finfo(float).tiny)
         step = np.zeros_like(logs)
         step[free] = np.linalg.solve(normal, downhill[free])
@@ -324,6 +331,7 @@ def _normal_matrix(slopes: Floats) -> Floats:
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))
+    # 2 * (n,) is the shape (n, n)
     return sum((part.T @ part for part in parts), np.zeros(2 * (slopes.shape[1],)))
 
 
@@ -455,6 +463,7 @@ def _fit_wider_grids(
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
     low, high = data.band
     for margin, density in product(MARGINS, DENSITIES):
+        # - 0.1: the least margin is the last one tried
         for slow in np.arange(margin, _LEAST_MARGIN - 0.1, -0.25):
             ends = max(10.0**-margin / high, data.shortest), 10.0**slow / low
             if ends[1] > ends[0] and has_plateau(
@@ -621,11 +630,13 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     prony = Prony(fit.strength / fit.E, fit.tau / T_ref)
     V = transit_speeds(prony, rate * T_ref)
     M = _moments(prony, 1.0, V)
+    # shorter where the times would span more than a series may
     reach = min(_REACH, math.sqrt(LARGEST_TIME_RATIO * low / high))
     times = grid_of_times((max(1.0 / (high * reach), data.shortest), reach / low), _TIMES)
     problem = LeastSquares(data, np.concatenate([times, fit.tau]))
     best = problem.solve()
     freedom = max(1, problem.right.size - int(np.count_nonzero(best)))
+    # the sum of squares of the fit, from the mean squares of its rows
     own = data[0].size * sum(misfit * misfit for misfit in misfits(data, fit))
     allowed = max(own, problem.cost(best) * (1.0 + _RISE / freedom))
     changes = []
@@ -638,6 +649,7 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
                 _pulled(problem, best, pull=pull, sign=sign, allowed=allowed), MOST_MODES
             )
             series = Prony(found.strength / found.E, found.tau / T_ref)
+            # at the same load kappa = R/l0 is proportional to the root of the long-time modulus
             changes.append(_moments(series, math.sqrt(found.E / fit.E), V) / M - 1.0)
             E.append(found.E)
             alpha.append(series.alpha)
@@ -670,6 +682,7 @@ def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Float
     parts = np.concatenate([np.ones((_WAVES.size, 1)), z / (1.0 + z)], axis=1) / problem.size
     modulus = problem.floor + parts @ best
     weight = j1(_WAVES) ** 2 / _WAVES  # in equal steps of ln u
+    # M is proportional to the sum of -Im(1/modulus), of which an unknown changes Im(part/modulus^2)
     slopes: Floats = (
         weight @ (parts / modulus[:, None] ** 2).imag / -(weight @ (1.0 / modulus).imag)
     )
@@ -696,6 +709,7 @@ def _pulled(
     found = best
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
+        # counted in fourth roots of the sum, so that one range of the logarithm serves all data
         weight = 10.0**middle * allowed**0.25
         tried = problem.solve(weight * pull, weight * (pull @ best + sign))
         if problem.cost(tried) <= allowed:

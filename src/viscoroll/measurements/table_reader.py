@@ -76,6 +76,8 @@ def storage_and_loss(
     both = " and ".join(pair)
     if pair[1] == "modulus":  # a difference of squares
         other = exact["loss" if pair[0] == "storage" else "storage"]
+        # of other^2 = modulus^2 - given^2 the relative error is at most modulus^2/other^2 times the
+        # sum of those of both
         rounding = rounding * (exact["modulus"] / other) ** 2
         table.require(
             rounding <= _ROUNDED, f"{both} do not determine the other modulus: give tan delta too"
@@ -257,6 +259,7 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     allowed = f"{two}, or a dict, quantity -> unit"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
         raise ParameterError("units", f"{units!r:.60}", allowed)
+    # each of the two is for all quantities that are converted to the same unit
     of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
     pairs = (
         dict(units)
@@ -322,6 +325,7 @@ def agreeing_numbers(
             if quantity.endswith("frequency")
             else AVERAGED
         )
+        # of temperatures an absolute difference: the zero of degrees Celsius has no meaning
         allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (quantity == "temperature")
         agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
         same = column.heading == alike[0].heading
@@ -380,6 +384,7 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     same = np.diff(at[order]) <= ONE_FREQUENCY * at[order][1:]
     change = np.where(same, np.abs(np.diff(np.log(modulus[order]))), 0.0)
     holds = np.ones(at.size, bool)
+    # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
     problem = f"an earlier row has the same {name} and another modulus"
     advice = "rows at several temperatures need a column of temperature; keep one strain"
@@ -412,14 +417,16 @@ def temperatures_of_lines(table: Table) -> Floats | None:
                 _celsius(number, unit, bool(low) or (commas and "," in number))
                 for low, number, unit in found
             }
+            # the line without its numbers, by which a line of the preamble is known as one of them
             wording = re.sub(r"[\d.,+-]", "", text)
+            # by the index of the first row below the line
             lines.setdefault(int(np.searchsorted(numbers, n)), {})[wording] = (
                 values.pop() if len(values) == 1 else np.nan
             )
     if not lines.keys() - {0}:
         return None
     starts = sorted({*lines, *np.searchsorted(numbers, table.starts).tolist()})
-    second = lines.get(starts[1], {})
+    second = lines.get(starts[1], {})  # starts[0] is 0, the block below the preamble
     lines[0] = {wording: value for wording, value in lines.get(0, {}).items() if wording in second}
     temperature = np.empty(numbers.size)
     for start in starts:
@@ -430,7 +437,7 @@ def temperatures_of_lines(table: Table) -> Floats | None:
                 "of the rows below"
             )
             raise FileError(table.path, f"line {numbers[start]}: {problem}")
-        temperature[start:] = values.pop()
+        temperature[start:] = values.pop()  # blocks below overwrite theirs
     return temperature
 
 
@@ -469,6 +476,7 @@ def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
                 if each.unit not in NO_UNIT and (each.sure or "°" in each.unit)
             ]
             hint = _LIKE_TEMPERATURE.match(heading) is not None
+            # kelvins of one unit of the column; without a unit those of degrees Celsius
             factor = max(map(_kelvins, units)) if units else float(hint)
             spread = np.inf
             with suppress(FileError):

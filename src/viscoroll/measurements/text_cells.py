@@ -87,6 +87,7 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
     """
     marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]
     marks = set("".join(marked)) & set(",.")
+    # both marks, or each has three digits behind it; without any mark the set is empty
     if len(marks) > 1 or (marks & set(doubtful) and all(map(_THOUSANDS.fullmatch, marked))):
         return ""
     return marks.pop() if marks else "."
@@ -125,6 +126,7 @@ def numbers_of(cells: list[str]) -> Numbers:
     Raises decimal.InvalidOperation for another text.
     """
     exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
+    # the exponent of a Decimal is the power of ten of its last digit: -2 of 0.25, 3 of 1e3
     half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]
     return Numbers(np.array(exact, np.float64), np.array(half))
 
@@ -191,6 +193,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
         raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
     shown = next((name for first, name in _ENCODINGS.items() if re.match(first, raw)), None)
     given = encoding or shown
+    # cp932 after UTF-8, before encodings that almost any bytes fit
     usual = _JAPANESE + _USUAL[1:] if _KANJI.search(raw) else _USUAL
     for name in (given,) if given else usual:
         try:
@@ -223,6 +226,7 @@ def cut_lines(text: list[str], separator: str) -> list[Line]:
     last line.  (pandas would require that all lines of a file, its preamble too, are as wide as its
     table.)
     """
+    # the separator ends a first cell; a blank does not, since "# 1 2" is a comment
     mark = re.compile(_COMMENT.format(separator.strip(" ")))
     plain = [mark.sub("", line) for line in text]
     found = []
@@ -235,7 +239,7 @@ def cut_lines(text: list[str], separator: str) -> list[Line]:
             enumerate(map(cut_by_blanks, plain), 1) if separator == " " else by_csv
         ):
             line = plain[number - 1]
-            comment = line != text[number - 1]
+            comment = line != text[number - 1]  # a mark was taken off
             if any(cells):
                 found.append(
                     Line(
@@ -266,6 +270,7 @@ def separator_of(text: list[str], decimal: str | None) -> str:
 
     def count(separator: str) -> int:
         rows = (line.cells for line in cut_lines(text[:_SAMPLE], separator) if line.numeric)
+        # rows of the most frequent width
         return max(Counter(len(cells) for cells in rows if len(cells) > 1).values(), default=0)
 
     return max((separator for separator in SEPARATORS if separator != decimal), key=count)
@@ -350,6 +355,7 @@ def readings(heading: str, row: str = "") -> list[Reading]:
         if inner := _PARENTHESES.fullmatch(heading):
             heading = f"{inner[1]} {inner[2]}".rstrip()
     ways = [(heading, "", False)]
+    # the last brackets first: a unit stands behind symbols, as in "Modulus (E') [MPa]"
     for group in reversed([*_BRACKETS.finditer(heading)]):
         name = heading[: group.start()].rstrip(" /") + " " + heading[group.end() :]
         ways.append((name, group[1] or group[2] or "", True))

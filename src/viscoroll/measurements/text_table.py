@@ -88,6 +88,7 @@ class Table:
         after each mark beside a cell of three digits.
         """
         cells = [row.cells[column] for row in self.rows]
+        # beside "567" a "1.234" may be the next thousand
         threes = any(len(cell) == 3 and cell.isdigit() for cell in cells)
         decimal = self.decimal if decimal_mark(cells, ",." * threes) else ""
         for row, cell in zip(self.rows, cells, strict=True):
@@ -269,11 +270,13 @@ class _Layout:
             if not line.numeric and self.is_heading_line(self.headings(line))
         ]
         # of several lines of headings above the same numbers the last one counts
+        # (line of headings, next such line or the end of the file)
         ends = zip(heads, [*heads, len(lines)][1:])
         heads = [head for head, end in ends if any(line.numeric for line in lines[head:end])]
         if heads:
             for line in lines[: heads[0]]:
                 if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
+                    # with empty cells between them numbers are headings of groups of columns
                     if all(line.cells):
                         raise self.fault(
                             line, "has numbers above the headings: keep one table of the file"
@@ -292,6 +295,7 @@ class _Layout:
         ]
         if above:
             *others, last = above
+            # the last line above the numbers may be the row of units of the line before
             is_units = others and self.units_of(self.headings(lines[last]))
             return (
                 [last - 1]
@@ -335,7 +339,7 @@ class _Layout:
         line, *body = self.lines[head:end]
         names = self.headings(line)
         first = [each.numeric for each in body].index(True)
-        while not names[-1]:
+        while not names[-1]:  # separators at the end of a line make empty cells
             names.pop()
         rows = [
             row
@@ -391,7 +395,7 @@ class _Layout:
             cells = self.headings(line)
             fits = len(cells) == width or (self.separator != " " and not any(cells[width:]))
             if fits and self.units_of(cells) and not any(found):
-                found = (cells + found)[:width]
+                found = (cells + found)[:width]  # "" behind a line that is shorter
             elif not (line.comment or self.is_title(line.text)):
                 raise self.fault(
                     line, f"is neither units nor numbers, {self.cut}: remove it or begin it with #"

@@ -168,6 +168,7 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
         return unknown
     mean, sd = _check_pair("prior", name, prior)
     sd = check_number(f"standard deviation of prior {name}", sd, above=0.0)
+    # without a unit the coordinate is the logarithm, whose standard deviation is given
     return unknown._replace(mean=float(unknown.to_u(mean)), sd=sd / (unknown.unit or 1.0))
 
 

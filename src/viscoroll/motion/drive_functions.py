@@ -151,6 +151,7 @@ class DriveFunctions:
         """
         if self._function_motions == 1:
             return most
+        # start and scale, then the terms of five functions (:attr:`pieces`), 8 bytes each
         columns = 2 + 5 * max(f.terms.shape[-1] for f in self.functions.values())
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
@@ -197,8 +198,10 @@ class DriveFunctions:
         force, torque, brake, speed = (
             self.functions.get(f, _NOTHING) for f in ("force", "torque", "brake", name)
         )
+        # the pull of the slope, over the load P cos(slope), adds to the constant term of the force
         tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
         tilt[:, 0, 0] = self.tangent
+        # without a prescribed speed its name is "", and both are the function that is 0
         rate = differentiate(name, speed) if name else speed
         return pack_pieces(
             (force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end
@@ -248,6 +251,7 @@ class DriveFunctions:
         """
         if self.prescribed or self.gains.any():
             return True
+        # the coefficients of the last piece, without its start and scale
         return any(
             self.for_kernel(part)[0][:, -1, 2:].any()
             for part in self._blocks(self._function_motions)
@@ -498,6 +502,7 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
+    # all functions start at 0, which is kept once
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
     starts = starts[:, (ends_of(starts) > starts + _INSTANT).any(axis=0)]
     kept = max(int((starts < end).any(axis=0).sum()), 1)
@@ -514,6 +519,7 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     for n, function in enumerate(functions):
         part = _restrict(function, rows, starts, ends)
         packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part
+    # index of the last piece of each motion that starts before the end
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
     if late.any():  # the last piece before the end acts after it too
@@ -543,6 +549,7 @@ def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> F
     piece = np.broadcast_to(piece, (max(rows, len(function.terms)), piece.shape[1]))
     terms = np.broadcast_to(function.terms, (len(piece), *function.terms.shape[1:]))
     terms = np.take_along_axis(terms, piece[..., None], 1)
+    # a piece that is not cut keeps its terms to the bit
     same = (first == starts) & (last == ends)
     return _start_at_zero(
         np.where(
@@ -584,6 +591,7 @@ def _substitute(
     endless = np.isinf(last) | (last == first)
     length = np.where(endless, 1.0, last - first)
     scale = np.where(endless, 0.0, (ends - starts) / length)
+    # the middle of the part in the x of the whole piece
     shift = np.where(endless, 0.0, (starts - first) / length * 2.0 - 1.0 + scale)
     result = np.zeros_like(terms)
     for n in range(terms.shape[-1] - 1, -1, -1):

@@ -198,11 +198,13 @@ class _Sampled:
         middle = 0.5 * (start + stop)
         half = 0.5 * (stop - start)
         t = middle + half * _POINTS
+        # the ends exactly, as a callable may jump beside them
         t[0] = start
         t[-1] = stop
         t = np.append(t, start + _RISE * (stop - start)) if so_far == 0.0 else t
         values = self.values(t)
         part = slice(*np.searchsorted(self.times, [start, stop]))
+        # every other point is a node of the fit; those between, and the samples, only compare
         nodes = values[: _POINTS.size : 2]
         t = np.append(t, self.times[part])
         values = np.append(values, self.samples[part])
@@ -222,6 +224,7 @@ class _Sampled:
                 error=largest,
                 so_far=so_far,
             ), None
+        # still 0 at the start and at the point _RISE after it: cut where it rises
         if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
             n = int(np.argmax(np.abs(values) > zero))
             return None, _bisect(t[n - 1], t[n], lambda time: abs(self.value(time)) <= zero)
@@ -235,6 +238,7 @@ class _Sampled:
         # magnify its rounding.
         terms = _product(_product((nodes - nodes[0])[None], _TO_SERIES), _TO_TERMS)[0]
         terms[0] += nodes[0]
+        # half is 0 where the motion has no duration: all points are then x = 0
         error = np.abs(polyval((t - middle) / (half or 1.0), terms) - values)
         if (error <= allowed).all():
             return Piece(
@@ -361,6 +365,8 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
         start, stop = open_intervals.pop()
         piece, cut = sampled.fit(start, stop, so_far)
         if piece is not None:
+            # one polynomial for both, unless it was tried and failed as an interval that was then
+            # halved
             if pieces and (pieces[-1].start, stop) not in failed:
                 joined, _ = sampled.fit(pieces[-1].start, stop, pieces[-1].so_far)
                 if joined is not None:
@@ -378,6 +384,8 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
             )
             allowed = "smooth except for jumps and corners; give it as a Schedule"
             raise mark_dimensionless(ParameterError(sampled.name, found, allowed))
+        # at a cut the parts end and begin at neighbouring doubles, else both in the middle; the
+        # left part is put last, to be fitted first, as ``so_far`` needs the order of time
         left, right = cut or (0.5 * (start + stop),) * 2
         open_intervals += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
     return pieces
@@ -400,7 +408,7 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     Raises as :meth:`_Sampled.values`.
     """
     merged: list[Piece] = []
-    rest = pieces[::-1]
+    rest = pieces[::-1]  # a stack: the next piece is its last
     while rest:
         piece = rest.pop()
         if merged and rest:
@@ -410,6 +418,7 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
                 before.stop - before.start, after.stop - after.start
             ):
                 corner = _intersection(before, after, piece)
+                # the tolerances are those of the largest value before each piece
                 left, _ = sampled.fit(before.start, corner, before.so_far)
                 right, _ = sampled.fit(corner, after.stop, piece.so_far)
                 if left and right:
@@ -523,6 +532,7 @@ def piecewise(
         starts, terms, error = fit_callable(
             name, function, end=end, rtol=rtol, low=low, resolve=resolve
         )
+        # a last piece, constant, with the value of the fit at x = 1
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         starts = np.append(starts, end)[None]
@@ -542,6 +552,8 @@ def _follow_corners(times: Floats, values: Floats) -> Piecewise:
 
     times, values: corners, (1 or m, k) each, times ascending, in T_ref; values dimensionless.
     """
+    # constant before the first corner and after the last; in a piece the mean of both ends, and x
+    # times half of their difference
     values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
     terms = np.empty((len(values), times.shape[1] + 1, 2))
     np.add(values[:, 1:], values[:, :-1], out=terms[..., 0])
@@ -549,6 +561,7 @@ def _follow_corners(times: Floats, values: Floats) -> Piecewise:
     terms *= 0.5
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])
+    # without pieces that have no length for any motion, as at a first corner at t = 0
     kept = (ends_of(starts) > starts).any(axis=0)
     if not kept.all():
         starts = starts[:, kept]

@@ -208,6 +208,7 @@ class Ensemble(RollResult):
         if self.V is None or not index.size or roller.scene().cover is not None:
             return report
         speeds = np.vstack([self.V0[index], self.V[index].T])
+        # not before the onset of partial slip; of a motion without onset, NaN, all times count
         rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(
             speeds
         )
@@ -482,6 +483,7 @@ def ensemble(
         found = solution.motions.out[batch.rows.index("V")]
         for V in (np.reshape(inputs["V0"], (-1, 1)), found):
             refuse_beyond(law, kappa * np.abs(np.nan_to_num(V)))
+    # None: not requested; 0: loads and works of free motions, which no kernel computes
     columns: dict[str, Any] = dict.fromkeys(FIELDS) | {
         name: np.zeros((count, times.size)) for name in names
     }
@@ -507,6 +509,7 @@ def _broadcast_inputs(
     arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
     arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
     counts = (1, 1) if problem.functions is None else problem.functions.counts
+    # stand-ins with as many entries as the drive has motions, for the shapes alone
     own = {name: np.zeros(n) for name, n in zip(("drive", "gains"), counts, strict=True) if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
@@ -541,6 +544,7 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     }
     if scale.si:
         for name, row in rows.items():
+            # a unit for each motion is a column; in place, as the rows may fill the memory
             np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
         times = {name: value * scale[name] for name, value in times.items()}
     times = {name: np.broadcast_to(value, shape) for name, value in times.items()}

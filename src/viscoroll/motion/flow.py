@@ -145,6 +145,7 @@ def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     Returns the path in :func:`folder`; its name is a digest of the parameters and the octave.
     """
     numbers = np.array((*_numbers(parameters), octave), np.float64)
+    # the prefix tells names of files with a seal from those of earlier versions, which had none
     return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
@@ -296,7 +297,7 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
     """
     new_map = FlowMap(
         parameters=parameters,
-        first=octave - flow_layout.OCTAVES,
+        first=octave - flow_layout.OCTAVES,  # exponent of the lowest octave
         table=np.zeros(flow_layout.SIZE),
         errors=(math.inf,) * 3,
         problem="",
@@ -355,8 +356,10 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     """
     _, kappa, mu, j = problem.parameters
     V = SPEEDS.x / kappa
+    # below the lowest speed V' is +-mu: T and X from rest to there are V/mu and V^2/(2 mu)
     least = 2.0**flow_layout.LOW / kappa
     state = problem.contact_states(V, np.zeros(V.shape))
+    # |omega - V| at the onset of partial slip
     limit = state[DELTA_STAR] * V
     for n, sign in enumerate((1.0, -1.0)):
         rate = mu - sign * 0.5 * state[MOMENT]
@@ -367,7 +370,10 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         half = SPEEDS.half / kappa
         T = NODES.integrals(1.0 / rate, half, least / mu)
         X = NODES.integrals(V / rate, half, 0.5 * least * least / mu)
+        # |I| at an onset at this speed, where omega = V + limit; I = V - j omega - 2 mu T stays
+        # constant while sliding
         slip = 2.0 * mu * T - V * (1.0 - j) + sign * j * limit
+        # increasing from 0: one speed at onset for each |I|
         if not (np.diff(slip.ravel(), prepend=0.0) > 0.0).all():
             raise NoFlowMap(STOPS)
         time = NODES.powers(T)
@@ -376,10 +382,13 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         parts.slide[n] = np.concatenate(
             [interleave_pairs(time, NODES.powers(limit)), path], axis=-1
         )
-        # nearly held: the inverse would end before the speeds that are served
+        # nearly held: the inverse would end before the speeds that are served; the sum of powers is
+        # T at the end of the third octave from the top, the highest one that is served
         if not kappa * mu * time[-3].sum() < 2.0 ** (flow_layout.HIGH - 1):
             raise NoFlowMap(STOPS)
+        # over kappa mu |T|, with the octaves of kappa V
         parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
+        # over kappa |I|/(1 + j); u is kappa |V| at onset
         u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
         values = [
             NODES.powers(value)
@@ -411,6 +420,7 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
     angle = rng.uniform(0.0, 2.0 * math.pi, _SAMPLE_SIZE)
     starts = size[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
     near = starts[: _SAMPLE_SIZE // 5]  # inside the stick zone, or close to it
+    # ``near`` is a view: this changes ``starts``
     near[:, 1] = near[:, 0] * (1.0 + mu / kappa * rng.uniform(-0.5, 0.5, near.shape[0]))
     errors = np.zeros((_SAMPLE_SIZE, 3))
 
@@ -451,7 +461,9 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
         """
         return look_up_ensemble(new_map, Motions(1.0, 0.0, *start, times, _MEASURED_ROWS))
 
+    # 800 decay times: V has fallen below the smallest double
     at_rest = flow(np.array([0.0, 800.0 * decay]))
+    # NaN, of a motion that starts in partial slip, becomes 0
     onset = float(np.fmax(at_rest.onset[0], 0.0))
     stiff_time = _stiff_time(new_map, max(abs(V0), abs(omega0)))
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
@@ -462,6 +474,7 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
         return 0.0, 0.0, 0.0
     exact, how = integrate_motions(new_map.parameters, start, np.ones(1), times)
     out = exact[list(_MEASURED_ROWS), 0]
+    # columns of integrate(): status, steps, changes of regime, onset time, rest time
     true_onset = how[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
@@ -554,6 +567,7 @@ def look_up_ensemble(
     from ..kernels.motion.flow_loop import look_up_motions
     from ..kernels.records import Flow
 
+    # in their own lengths, but contiguous and read-only, as kernels are compiled for
     V0, omega0, times = (
         broadcast_vector(a, a.shape) for a in (motions.V0, motions.omega0, motions.t)
     )

@@ -63,6 +63,7 @@ class Nodes:
     def __init__(self, count: int) -> None:
         rule = Interpolation(chebyshev(count))
         self.t = rule.nodes
+        # rows: integrals from -1 to each node, the last one to 1
         self._integrals = rule.integrals([*rule.exact, 1])
         self._chebyshev = to_chebyshev(count)
         self._powers = powers_of_chebyshev(count, 0.0, 1.0).T.copy()
@@ -87,6 +88,7 @@ class Nodes:
         Returns the integral from that end to each node plus ``start``, in the shape of ``slopes``.
         """
         whole = _multiply(self._integrals, slopes) * np.asarray(half)[..., None]
+        # the integral over all rows before each
         rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
         return whole[..., :-1] + (start + rises)[..., None]
 
@@ -159,7 +161,9 @@ class Rows:
         Returns the arguments, of the shape of ``target``; the upper end of the last row for values
         beyond it; for values below those of the first row, those of its polynomial continued.
         """
+        # derivative with respect to x: t = (x - begin)/half - 1
         slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]
+        # values and arguments of neighbouring octaves differ by factors: the logarithm starts well
         x = np.interp(np.log(target), np.log(self.value(powers, self.x).ravel()), self.x.ravel())
         for _ in range(_MAX_ITERATIONS):
             change = (self.value(powers, x) - target) / self.value(slopes, x)
@@ -321,6 +325,7 @@ class SlowManifold(NamedTuple):
         V, delta = (
             value(powers, end[..., None] + span[..., None] * _GAUSS[0]) for powers in self.speeds
         )
+        # the logarithm falls at a constant rate, so that dt = -d(logarithm)/rate
         near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
         direct = [
             (_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))
@@ -344,7 +349,9 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     rows, V, delta = _integrate_manifold(problem)
     slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]
     to_go = []
-    for slope, n in zip(slopes, (1, 1, 3), strict=True):  # V falls like exp(lambda)
+    # with the slow logarithm lambda V and omega go as exp(lambda), and so do delta and Q: the slip
+    # loss as exp(3 lambda).  ``below`` is the integral from -infinity to the first edge
+    for slope, n in zip(slopes, (1, 1, 3), strict=True):
         below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
         to_go.append(NODES.powers(NODES.integrals(slope, rows.half, below) / problem.slow_rate))
     speeds = NODES.powers(V), NODES.powers(delta)
@@ -389,6 +396,7 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     gamma = np.ones(1)
     halves = []
     steps = []
+    # a step is the time from V to V/2 with M/V as in the middle: (1 + j) V' = -M in time gamma t
     while kappa * V[0] > _SLOW_LOG_ORIGIN:
         between = 0.75 * V
         step = (
@@ -402,8 +410,11 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
             raise NoFlowMap(OUT_OF_RANGE)
         halves.append((V, delta))
         steps.append(rate * step[0])
+    # the slow logarithm of each state is the sum of the steps after it; the first step, which leads
+    # to the first state, is in none
     starts = np.append(np.cumsum(steps[:0:-1])[::-1], 0.0)
     rows = Rows(_SLOW_LOG_EDGES[: np.searchsorted(_SLOW_LOG_EDGES, starts[0])])
+    # in the order of time, in which the slow logarithm falls
     nodes = rows.x.ravel()[::-1]
     states = np.empty((2, nodes.size))
     for (V, delta), start, end in zip(halves, starts, [*starts[1:], -np.inf], strict=True):
@@ -475,7 +486,7 @@ def fill_layers(
     split_powers = _split_powers(problem, sign, onsets)
     split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
     V, delta, V_end = _layer_motions(problem, sign, V0=V0, k0=k0, split=split)
-    # over (octave, V, octave of u, u)
+    # dE/du: all E up to the split lie between the lowest u and 1; axes (octave, V, octave of u, u)
     width = np.where(
         np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT,
         split[..., None] / (1.0 - _LOWEST_U),
@@ -483,10 +494,12 @@ def fill_layers(
     )
     half = width * _LAYER.half
     V_ratio = V / V0[..., None, None]
+    # d(loss)/dE divided by V0^2: the power delta V Q in time gamma t, and dE = k0 d(gamma t)
     loss = delta * V_ratio * problem.contact_states(V, delta)[TRACTION] / (V0 * k0)[..., None, None]
     slopes = V_ratio - 1.0, V_ratio * (1.0 + delta) - 1.0, loss
     columns = [np.log(V_ratio), delta, *(_COARSE.integrals(slope, half) for slope in slopes)]
     for column, values in enumerate(columns):
+        # powers of u, then, with the nodes of V as last axis, powers of kappa V
         powers = _COARSE.powers(np.moveaxis(_COARSE.powers(values), 1, -1))
         layer[:, :, column] = powers.reshape(*layer.shape[:2], -1)
     # the motion on the slow manifold that they have reached at the end of the layer
@@ -500,6 +513,8 @@ def fill_layers(
     angle = V0 / k0 * (E + angle) - slow_angle
     lost = V0 * V0 * lost - (slow.rows.value(slow.loss, slow_log) - slow.rows.value(slow.loss, end))
     slow_log_at_V = slow.slow_log[first - flow_layout.LOW :][: flow_layout.OCTAVES]
+    # the slow logarithm at onset is that of V0 on the manifold, whose row has 24 powers, plus this
+    # smooth difference, for which 12 are enough
     above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
     excess = [_pad(_COARSE.powers(value)) for value in (x, angle, lost)]
@@ -549,6 +564,7 @@ def _state_before_onset(
     push = sign * mu
     half_moment = 0.5 * state[MOMENT]
     tau = _LEAD * gamma
+    # full slip: V' = push - M/2 and j omega' = -(push + M/2) in time gamma t, backward from onset
     before = V - tau * (push - half_moment)
     return before, (
         V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / j
@@ -571,6 +587,7 @@ def _layer_motions(
     (octave, node of V)), dimensionless.
     """
     u = _LAYER.node_positions(_COARSE)
+    # with this gamma t = 1 is the split: the times E/split are common to all motions
     gamma = (split / k0).ravel()
     starts = _state_before_onset(problem, sign, V0.ravel(), gamma)
     before = _LEAD + np.append((u[:_OCTAVES_BEFORE_SPLIT] - _LOWEST_U) / (1.0 - _LOWEST_U), 1.0)
@@ -614,15 +631,17 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
         *_state_before_onset(problem, sign, V, gamma), gamma, _LEAD + _CROSSINGS, STICK_ENDS
     )
     passed = sign * delta < 0.0
+    # two points on either side of the first change of sign
     index = np.clip(passed.argmax(axis=1), 2, _CROSSINGS.size - 2)[:, None] + np.arange(-2, 2)
     E = _CROSSINGS[index]
     delta = np.take_along_axis(delta, index, axis=1)
-    # the inverse of a cubic
+    # E as the cubic of delta through the four points, at delta = 0, in the form of Lagrange
     split = np.zeros(V.size)
     for n in range(4):
         others = [delta[:, m] / (delta[:, m] - delta[:, n]) for m in range(4) if m != n]
         split += E[:, n] * np.prod(others, axis=0)
     split = split.reshape(powers.shape)
+    # only octaves in which delta passes 0 at every node: the others keep 1
     turns = np.all(passed.any(axis=1).reshape(powers.shape), axis=1)
     powers[turns] = _SPLIT_NODES.powers(split[turns])
     return powers

@@ -175,11 +175,11 @@ def _solve_by_flow_map(
         path=not {"x", "angle"}.isdisjoint(rows), loss=not set(LOSSES).isdisjoint(rows)
     )
     about |= {"flow_error": error, "flow_problem": chosen.problem}
-    if not error <= rtol:
+    if not error <= rtol:  # true of NaN too
         return None
     wanted = tuple((STATES + LOSSES).index(name) for name in rows)
     motions = Motions(
-        gamma=scene.gamma * unit * unit,
+        gamma=scene.gamma * unit * unit,  # an acceleration times a time squared
         rest=threshold * unit,
         V0=V0,
         omega0=omega0,
@@ -216,6 +216,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 
         start, stop: index of the first motion of the block, and of the one after the last.
         """
+        # a status below 0: not looked up
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:
             return
@@ -240,6 +241,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
             found.rest[left],
         ) = info.T
 
+    # with the added mass and a material each the law is that of one motion
     mapped = found.status.max(initial=-1) >= 0
     block = (
         _MAPPED_BLOCK
@@ -282,6 +284,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
         Returns (record of the law or laws; whether the bodies may take unequal parts of M).
         """
         if several is not None:
+            # one material for all motions is index 0
             index = np.minimum(index, len(several) - 1)
         if unsteady:
             material: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]

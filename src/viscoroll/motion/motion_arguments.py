@@ -255,6 +255,7 @@ class Drive(NamedTuple):
     @property
     def acts(self) -> bool:
         """Whether anything is given."""
+        # all are None; written out, as every call of roll asks
         return not (
             self.force
             is self.torque

@@ -204,6 +204,7 @@ def _dataset(
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims
     data = {}
+    # of a free motion loads and works are 0 or follow from the states; an ensemble has what it kept
     for name in ROWS if acts else STATES:
         if (values := result[name]) is not None:
             if name == "regime":
@@ -265,6 +266,7 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
                 "long_name": f"times of the given {name}",
                 "units": result.scale.unit("t"),
             }
+            # of one axis if all motions have the same corners, which then are a coordinate
             times = _shared(value.times, 1)
             value = value.values
             dims = "motion", f"{key}_time" if times.ndim == 1 else f"{key}_corner"
@@ -467,6 +469,7 @@ def ensemble_dataset(result: Any) -> Dataset:
     variables = _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:
         value = _shared(np.asarray(getattr(result.scene, name)))
+        # () where all motions have one value
         variables[name] = ("motion",)[: value.ndim], value, attributes(name)
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         variables[name] = "motion", result[name], column_attributes(name, si)

@@ -181,6 +181,7 @@ def make_problem(
     )
     if single and scene.shape:
         require_single(material=roller.material, **roller.numbers)
+    # one threshold in m/s would be another dimensionless number for each motion
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError(
             "rest", rest, "None", "rest needs the same R and T_ref (or T_epsilon) for all motions"
@@ -199,6 +200,7 @@ def make_problem(
         )
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
+            # rtol and the threshold of rest stay; the third is the step limit
             limits = (*limits[:2], limits[2] + functions.corners)
         if rest is not None:
             refuse_rest(rest, functions)
@@ -318,6 +320,7 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
         )
         sentence = f"rested is given, but {why}: leave it out, the loss of the start is not known"
         raise ParameterError("rested", rested, "left out", sentence)
+    # part of V; V = 0 with omega0 = 0 was refused above, and without a limit any other omega0 slips
     lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
     return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS
 
@@ -451,5 +454,6 @@ def integrate_motions(
         )
 
     run_blocks(work, count, _BLOCK, threads=threads)
+    # threads end in any order
     out, info = zip(*(blocks[start] for start in sorted(blocks)), strict=True)
     return np.concatenate(out, axis=1), np.concatenate(info)

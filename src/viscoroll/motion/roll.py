@@ -196,6 +196,7 @@ class Motion(RollResult):
         reached = self.regime >= 0
         V = self.V[reached]
         delta = self.delta[reached]
+        # a finite creepage far beyond every onset of full slip, as contact() refuses infinity
         delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
         slowest = -SPEED_RANGE[0] * self.scale["V"]
         V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
@@ -245,6 +246,7 @@ class Motion(RollResult):
         t = whole.t[reached]
         V = whole.V[reached]
         omega = whole.omega[reached]
+        # for each state the index of the last state up to it that moves
         moving = np.maximum.accumulate(np.where((V != 0.0) | (omega != 0.0), np.arange(V.size), 0))
         report = validity(self.roller, V[moving], omega=omega[moving])
         if capacity is not None:
@@ -262,6 +264,7 @@ class Motion(RollResult):
             rolls = whole.regime[reached] > 0
             x = whole.x[reached]
             report = self._add_steadiness(report, self.roller, V=V, rolls=rolls, x=x, ends=False)
+        # each output time ends a part, whose worst state counts
         last = np.searchsorted(t, outputs)
         return Validity(
             *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
@@ -422,6 +425,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     if scale.si:
         rows = {name: row * scale[name] for name, row in rows.items()}
     codes[np.isnan(codes)] = -1.0
+    # rows (time, new regime), or (time, -1) for a reversal of V; NaN where fewer were noted
     noted = noted[~np.isnan(noted[:, 1])]
     switches = tuple(
         Switch(float(when) * T, REGIMES[int(code)]) for when, code in noted if code >= 0.0
@@ -581,6 +585,7 @@ def roll(
     units = scale_of(roller)
     times = output_times(t, units)
     drive = Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V)
+    # plain floats, the common case, need no search for units
     if not UNLABELLED_TYPES.issuperset(map(type, (V0, omega0, *drive))):
         (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
     options = SolverOptions(

@@ -67,7 +67,8 @@ class Histogram(msgspec.Struct):
         """
         kept = values[np.isfinite(values)]
         bits = (kept + 0.0).view(np.int64)  # -0 becomes 0
-        # The order of numbers is that of their bins.
+        # Bits of negative numbers but the sign are inverted: the order of numbers is that of their
+        # bins.  The shift drops the bits of the fraction by which bins do not differ.
         numbers = ((bits ^ ((bits >> 63) & _MAGNITUDE)) >> _DROPPED).astype(np.int32)
         bins, counts = np.unique(numbers, return_counts=True)
         if not kept.size:
@@ -378,6 +379,7 @@ def drawn_summary(ensemble: Dataset) -> Dataset:
     dataset = summary_dataset(summary, ensemble["t"].values, LEVELS, si="R" in ensemble.attrs)
     for name in names:  # values that differ by less than a bin of the summary
         last: Any = summary.histograms[name][-1]
+        # fewer different edges: values too near each other for even bins, or NaN without values
         edges = np.unique(np.linspace(last.low, last.high, _MOST_BARS + 1))
         if edges.size == _MOST_BARS + 1:
             counts = np.histogram(last.values, edges)[0]
@@ -530,6 +532,7 @@ def _variables(
     for part, (dims, values, title) in parts.items():
         units = "1" if part in ("counted", "histogram") else about["units"]
         attributes = {"long_name": f"{title} of: {about['long_name']}", "units": units}
+        # a quantity that is one number per motion has no axis t: its last axis, of length 1, goes
         data[f"{name}_{part}"] = dims, values.reshape(values.shape[: len(dims)]), attributes
     exact = any(one.values is not None for one in histograms)
     accuracy = "exact" if exact else "accurate to the width of a bin, at most 0.4 %"

@@ -249,6 +249,7 @@ def _executor(
             workers = sum(client.nthreads().values())
             if not workers:
                 raise FileError(cluster, "this cluster has no workers")
+            # not pure: equal calls are evaluated again, since a block may have been lost on disk
             with client.get_executor(pure=False, retries=_RETRIES) as pool:
                 yield pool, workers, client.scatter(store, broadcast=True)
     except ViscorollError:
@@ -282,7 +283,7 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
         return distributed.Client(
             n_workers=thread_count(threads),
             threads_per_worker=1,
-            dashboard_address=":0",
+            dashboard_address=":0",  # any free port: a fixed one may be taken
             silence_logs=logging.CRITICAL,
         )
 
@@ -427,7 +428,9 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     record = len(encoded(Record("", {}, summary=summary)))
     seconds = time.perf_counter() - start
     stored = sum(map(len, files.values())) * (run.settings.n / trial) + record * run.blocks
+    # the peak contains the motions of the trial already
     memory = _peak_memory() + (workers * run.block - trial) * run.bytes_a_motion
+    # blocks of the worker that has most of them, rounded up
     motions_a_worker = min(-(-run.blocks // workers) * run.block, run.settings.n)
     seconds = seconds * motions_a_worker / trial + law_seconds
     return Estimate(
@@ -477,6 +480,7 @@ def _peak_memory() -> float:
         import resource
     except ImportError:
         return _USUAL_RESIDENT
+    # macOS counts bytes, other systems KiB
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (
         1 if sys.platform == "darwin" else 1024
     )

@@ -200,6 +200,7 @@ def motion_files(
     start = 0 if number is None else number * block
     for name, variable in motions.variables.items():
         of_motions = "motion" in variable.dims
+        # a tuple times False is empty: arrays without motions have neither that axis nor its chunks
         shape = variable.shape[of_motions:]
         array = group.create_array(
             name,
@@ -211,6 +212,7 @@ def motion_files(
             config={"write_empty_chunks": True},
             attributes=variable.attrs | {"_ARRAY_DIMENSIONS": list(variable.dims)},
         )
+        # for a block the arrays over motions, for the metadata the values of all others
         if of_motions == (number is not None):
             array[start : start + len(variable)] = variable.values
     content = _as_bytes(files)
@@ -338,6 +340,7 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
         raise FileError(
             root, f"was written with other versions, {versions}: finish it with these, or {ADVICE}"
         )
+    # this run with the number of motions of the store: has it the identity of the store?
     before = replace(run, settings=msgspec.structs.replace(run.settings, n=max(record.motions, 1)))
     if of_a_block or record.run != identity(before):
         raise FileError(root, f"contains the results of another run file: {ADVICE}")

@@ -309,6 +309,7 @@ class RunResults(Result):
             quantiles = zip(data["quantile"].values, data[f"{name}_quantiles"].values, strict=True)
             columns |= {float(level): np.atleast_1d(values) for level, values in quantiles}
             mean = data[f"{name}_mean"]
+            # one number per motion: one row, without a time
             t = data["t"].values if mean.ndim else [np.nan]
             rows = [[column_name(name, unit_of(mean.attrs))], t]
             tables.append(
@@ -397,6 +398,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
             path,
             f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command repairs it",
         )
+    # chunks=None: arrays of numpy, read at their use, without dask
     return RunResults(root, xr.open_zarr(root, chunks=None))
 
 
@@ -478,6 +480,7 @@ def _append_motions(store: Path, path: Path) -> None:
         target.dimensions = {"motion": arrays["status"].shape[0], "t": arrays["t"].shape[0]}
         for name, array in arrays.items():
             attrs = dict(array.attrs)
+            # names of the axes, which zarr has as an attribute and netCDF by itself
             dims = attrs.pop("_ARRAY_DIMENSIONS")
             variable = target.create_variable(
                 name,

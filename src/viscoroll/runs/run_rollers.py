@@ -126,6 +126,7 @@ class Rollers(Cylinder):
             mu=self.mu,
             j=self.j,
         )
+        # gamma = P T_ref^2/(m R) of T_ref = T: over T it is 1/s, as the class counts time
         return scene.replace(gamma=scene.gamma / T)
 
     @cached_property
@@ -202,9 +203,11 @@ def _warm_bodies(
         raise described_error(
             "ambient", "leads to no temperature within the range of the shift", "another"
         )
+    # the coldest equilibrium, which a roller takes from cold
     theta = found[..., 0]
     warm = dict(bodies)
     for name, body in bodies.items():
+        # a body that does not relax stays as it is
         if body.prony.alpha > 1.0 and not theta.ndim:
             warm[name] = body.at(float(theta))
         elif body.prony.alpha > 1.0:
@@ -299,6 +302,7 @@ def _body(path: Path, name: str, section: Any) -> Any:
     if typical is section:
         return section
     series = parse_series(path, name, section) or typical.prony
+    # the series, and T_ref, are those at the temperature of the first motion
     if (factors := _time_factors(path, name, section)) is not None:
         series = series.slower(factors)
     E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))

@@ -232,6 +232,7 @@ def _fraction_outside(run: Run) -> float:
     roller: Any = roller_of(run.path, content)
     V0 = np.abs(content["start"]["V0"])
     scene = roller.scene()
+    # lam l0 with l0 = R/kappa is the contact length
     lam = contact(scene, V0 / roller.scale["V"], delta=0.0, fields="lam").lam
     frequency = transit_frequency(V0, lam * roller.R / scene.kappa)
     outside: Any = False
@@ -264,6 +265,7 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     flag_meanings, a word for each code.  The long_name is "" of a name that is none of these.
     """
     if name.startswith(PREFIXES["drive"]):
+        # drive_torque, drive_torque_2 (its second value) or drive_torque_time_2
         load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")
         if corner.startswith("time_"):
             times = f"time {corner.removeprefix('time_')} of the given {load}"
@@ -273,6 +275,7 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
             "long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)
         }
     if name.startswith(PREFIXES["base"]):
+        # a number of the base is named as that of the cylinder, whose words are exchanged
         about = attributes(name.removeprefix(PREFIXES["base"]), si)
         return about | {"long_name": f"base: {about['long_name'].removesuffix(' of the cylinder')}"}
     letter, _, index = name.partition("_")
@@ -342,6 +345,7 @@ class Store:
         more: other fields of the :class:`Record`: ``about`` of the start, ``summary`` of a block.
         Raises FileError if a file cannot be written; the part is then not complete.
         """
+        # the files first: a record that is there states that they are complete
         record = Record(
             identity(self.run), write_files(self.root, files), self._motions(name), **more
         )
@@ -389,6 +393,7 @@ class Store:
         if not root.is_dir():
             raise FileError(root, f"is a file: {ADVICE}")
         refuse_unreadable(root)
+        # any readable record tells the run: start and end first, since a block does not state n
         blocks = sorted((root / RECORDS).glob("[0-9]*"))
         records = map(
             read_record, (_record_path(root, "start"), _record_path(root, "end"), *blocks)

@@ -203,6 +203,7 @@ class Run:
         """Memory that a motion takes while its block is evaluated, bytes, an int: of its fields and
         inputs.
         """
+        # inputs as points and as values; 12: parameters, starts, and how a motion ended
         columns = len(self.fields) * self.t.size + 2 * len(self.inputs.uncertain) + 12
         return 8 * (columns + self.t.size)  # one output at a time is copied for its summary
 
@@ -217,7 +218,7 @@ class Run:
         """
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)
-        # a power of two suits Sobol's sequence
+        # a power of two suits Sobol's sequence: the largest one that fits
         fits = 1 << max(_MOST_BYTES // self.bytes_a_motion, 1).bit_length() - 1
         return min(_MOST_MOTIONS[self.method], fits, self.settings.n)
 
@@ -286,6 +287,7 @@ def read_run(path: str | PathLike[str]) -> Run:
         if name not in content:
             raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
     for name in START:
+        # V0 may be missing where [drive] prescribes V, omega0 where it prescribes omega
         if name not in content["start"] and name[:-1] not in content.get("drive", {}):
             advice = (
                 ': must be a number, or "rolling" for V0/R'
@@ -415,7 +417,7 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
         options = SolverOptions(
             rtol=settings.rtol,
             rest=settings.rest,
-            max_steps=1,
+            max_steps=1,  # nothing is integrated: the problem is made, which checks all
             resolve=None,
             unsteady=settings.unsteady,
             rested=settings.rested,
@@ -458,5 +460,6 @@ def _digest(
         for columns in inputs.joint.values()
         for name, values in columns.items()
     ]
+    # deterministic: keys in sorted order
     described = [kept, times.tolist(), sections, materials, samples]
     return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()

@@ -135,10 +135,12 @@ def sobol_indices(
     data = {}
     for name, values in outcomes.items():
         over = ("t",) * QUANTITIES[name].over_time
+        # differences below it are those of the integrator, not of the inputs
         noise = (
             settings.rtol
             * np.abs(values, where=np.isfinite(values), out=np.zeros_like(values)).max()
         )
+        # a row for each t: motions in the order of _points, base points of A, of B, of each mixture
         indices, reasons = zip(
             *(_indices(row.reshape(-1, base), noise, settings.seed) for row in values), strict=True
         )
@@ -163,6 +165,7 @@ def sobol_indices(
         "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
     }
     attrs = about(run) | provenance("Sobol indices of motions of a viscoelastic cylinder")
+    # blocks are those of the run, not of these motions
     for of_blocks in ("motions_a_block", "blocks"):
         del attrs[of_blocks]
     ended = zip(*np.unique(status, return_counts=True), strict=True)
@@ -220,6 +223,7 @@ def _points(count: int, base: int, seed: int) -> Floats:
     each motion: the points of A, those of B, then for each input n the points of A with row n taken
     from B.
     """
+    # halves of the coordinates of one sequence, so that A and B are even together
     A, B = np.split(
         points("sobol", seed, n=base, dimensions=2 * count, start=0, stop=base, block=0), 2
     )
@@ -303,6 +307,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     base = values.shape[1]
     resampled = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
     found[0::2] = _estimated(values)
+    # rows: S1, its half-width, ST, its half-width; that of a normal distribution is 1.96 deviations
     found[1::2] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(resampled, axis=0, ddof=1)
     return found, ""
 
@@ -350,7 +355,7 @@ def table(indices: Dataset) -> DataFrame:
             .reset_index()
         )
         frame.insert(0, "quantity", name)
-        over = ["t"] * ("t" in frame)
+        over = ["t"] * ("t" in frame)  # a quantity of one number per motion has no such column
         tables.append(
             frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable")
         )

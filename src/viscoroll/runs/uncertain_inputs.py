@@ -79,6 +79,7 @@ class Distribution:
         law = self.law
         if (self.low, self.high) == law.support():
             return law.ppf(u)
+        # from above: survival at the upper end is the smaller one, and 1 - u counts from there
         upper = law.cdf(self.low) > 0.5
         below, inverse = (law.sf, law.isf) if upper else (law.cdf, law.ppf)
         first, last = (
@@ -151,10 +152,12 @@ class Inputs:
             mixed = sum(
                 part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal, strict=True)
             )
+            # 0 or 1, which ndtr may round to, would be infinite quantiles
             rows |= dict(zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST), strict=True))
         values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
         for file, columns in self.joint.items():
             size = next(iter(columns.values())).size
+            # the product of a u near 1 may round to the number of rows
             row = np.minimum((rows[file] * size).astype(np.int64), size - 1)
             values |= {name: column[row] for name, column in columns.items()}
         return values
@@ -188,6 +191,8 @@ class Inputs:
             *self.random,
             *(name for columns in self.joint.values() if len(columns) == 1 for name in columns),
         ]
+        # a row for each input: in combination n the input n at 1, the upper of its ends, in the
+        # last one none; then all of them exchanged
         at_low = np.eye(len(names), len(names) + 1, dtype=bool)
         ends = {
             name: self.ends(name)[np.r_[row, ~row].astype(int)]
@@ -253,6 +258,7 @@ def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
         return part
     numbers: list[Any] = []
     for member in part:
+        # the number before, itself perhaps that of an input
         numbers.append(numbers[-1] if numbers and member == SAME else _fill_in(member, values))
     return numbers
 
@@ -378,6 +384,7 @@ class _Reader:
                 name: self.part(member, within, name, (*words, name))
                 for name, member in value.items()
             }
+        # the section of a number within a table is "drive.torque": its first word has the prefix
         name = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
         number = Input(PREFIXES.get(section.partition(".")[0], "") + name, section, key)
         if "distribution" in value:
@@ -421,6 +428,8 @@ class _Reader:
             )
         low = max(low, float(cut[0]))
         high = min(high, float(cut[1]))
+        # both differences are the probability; in the upper tail that of cdf rounds to 0, in the
+        # lower one that of sf
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
             interval = (
                 f"truncate = {cut!r:.40}" if "truncate" in table else f"support [{low:g}, {high:g}]"
@@ -471,6 +480,7 @@ class _Reader:
         if missing := [shape for shape in shapes if shape not in parameters]:
             raise self.fault(number, f"{name} also needs {', '.join(missing)}")
         frozen = law(**{key: float(value) for key, value in parameters.items()})
+        # scipy returns NaN for parameters out of range, and raises nothing
         if not np.isfinite(frozen.ppf(0.5)):
             raise self.fault(number, f"scipy.stats.{name} does not allow these parameters")
         return frozen
@@ -511,6 +521,7 @@ class _Reader:
         except (OSError, ValueError, KeyError, FileError) as error:
             text = " ".join(str(error.problem if isinstance(error, FileError) else error).split())
             raise self.fault(number, f"{where} cannot be read ({text:.200})") from error
+        # one entry for each file, however it is spelt
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
         if columns and next(iter(columns.values())).size != values.size:
             raise self.fault(number, f"{where}: its length differs from that of the other columns")

@@ -157,16 +157,20 @@ def creep_nodes(
     roller = roller_of(what, alpha)
     speeds = increasing("V", V, unit=roller.scale, above=0.0)
     roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
+    # all pairs of speed and alpha
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
     found = roller.contact(speeds, delta=0.0, fields=("delta_minus", "delta_plus"))
     largest = np.maximum(np.abs(found.delta_minus), np.abs(found.delta_plus))
     ends = np.sort(_END_RATIO * largest, axis=None)
-    # nodes divided by their number, per creepage; between two ends it is constant
+    # Nodes divided by their number, per creepage; between two ends it is constant.  Half of it is
+    # even up to the largest end; of the other half each (V, alpha) whose end lies beyond the
+    # creepage has 1/end, a sum from the largest end down.
     density = (1.0 / ends[-1] + np.cumsum(1.0 / ends[::-1])[::-1] / ends.size) / 2.0
+    # part of the nodes up to each end, and in its inverse the nodes at equal parts
     fraction = np.append(0.0, np.cumsum(density * np.diff(ends, prepend=0.0)))
     places = np.append(0.0, ends)
     half = np.interp(np.linspace(0.0, fraction[-1], count // 2 + 1), fraction, places)
-    return np.concatenate([-half[:0:-1], half])
+    return np.concatenate([-half[:0:-1], half])  # the mirror image, without a second 0
 
 
 def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
@@ -262,7 +266,8 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
     import xarray as xr
 
     symbol = SYMBOLS[name]
-    allowed = symbol.range.replace("mu", "mu P") if si else symbol.range  # of Q
+    # that of Q: |Q| <= mu becomes |Q| <= mu P; other ranges do not have mu
+    allowed = symbol.range.replace("mu", "mu P") if si else symbol.range
     about = {
         "symbol": symbol.latex,
         "range": allowed,
@@ -447,6 +452,7 @@ def _coupled_dataset(
     """
     law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
     if isinstance(roller, Cylinder):
+        # so that the file states its unit of time in s, and the bodies in SI units
         law = replace(law, T_ref=roller.T_ref, pair=roller.pair)
     return law_as_dataset(law, {})
 
@@ -474,6 +480,7 @@ def _evaluate_nodes(
     names = names if scene.cover is not None else tuple(name for name in names if name != "delta_0")
     fields = _evaluate(roller, plane, names, method)
     volume = _evaluate(roller, grid, (*VOLUME, *of_traction), method)
+    # the fields over the plane were computed at the one creepage 0, whose axis is the second
     return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}
 
 

@@ -190,6 +190,7 @@ def measured_errors(
             table.first + octaves * random.random(_ALPHAS_PER_OCTAVE * octaves)
         ).tolist()
         found = [
+            # at least one point each; None or 0 stays, the number by octaves
             measured_errors(table.at(alpha), count and 1 + count // len(alphas), seed)
             for alpha in alphas
         ]
@@ -202,8 +203,10 @@ def measured_errors(
     rows = Rows(e0, len(table.coefficients))
     # kappa |V| = 1/(2 sqrt(H)) and v = 1/F lie within [1/(2 zeta sqrt(alpha)), 1/zeta].
     octaves = rows.count + np.log2(table.alpha) / 2.0 + 3.0
+    # from 4 2^-e0, whose x is in row 0, down to where x is beyond the last row for every alpha
     zeta = np.exp2(2.0 - e0 - octaves * random.random(count or int(_POINTS_PER_OCTAVE * octaves)))
     (shift, growth, half_space, cylinder), _, N = evaluate_by_modes(table.material, zeta)
+    # H = zeta^2 (1 + 2 growth) and F = zeta (1 + shift), in closed form
     root = np.sqrt(1.0 + 2.0 * growth)
     F = 1.0 + shift
     M = half_space + cylinder
@@ -212,10 +215,12 @@ def measured_errors(
     largest = np.abs(
         evaluate_by_modes(table.material, np.exp2(2.0 - e0 - np.arange(octaves))).N
     ).max()
+    # in the order of FUNCTIONS: lam, epsilon, both parts of M, N, share and press
     scales = exact[0], exact[1], M, M, np.full(zeta.size, largest), exact[5], exact[6]
     errors = {}
     for n, name in enumerate(FUNCTIONS):
         x = 0.5 / (zeta * root) if n < _SPEED_FUNCTIONS else 1.0 / (zeta * F)
+        # before the end of the last row; where the scale is 0 the function is 0 by construction
         inside = (x < np.ldexp(1.0, e0 + rows.count - 1)) & (scales[n] > 0.0)
         (found,), _ = rows.read(table.coefficients[None, ..., n], x[inside])
         error = np.abs(found - exact[n][inside]) / scales[n][inside]
@@ -249,18 +254,21 @@ def _measured_errors_of_cover(
     slow = 0.1 / table.retardation_time.max(initial=1.0)
     fast = 10.0 / table.relaxation_time.min(initial=1.0)
     u = slow * (fast / slow) ** random.random(count)
+    # rows: lam, L, epsilon, both moments divided by u, then the functions of shear; columns: speeds
     exact = np.array([solve_at_speed(cover, each, orders=_COVER_TERMS) for each in u.tolist()]).T
     lam, L, epsilon, *moments = exact[: len(_COVER_FIELDS)]
     M = u * sum(moments)
     by_shear = exact[len(_COVER_FIELDS) :]
+    # an elastic layer has one row, of constants
     if len(table.steady_coefficients) > 1:
         found = Rows(table.e0, len(table.steady_coefficients)).read(table.cover.creep[1:], u)[0]
     else:
         found = table.cover.creep[1:, 0, :1]
     errors = dict(zip(COVER_FUNCTIONS[1:], (found - by_shear) / L, strict=True))
     # at the creepage of free rolling there is no traction
-    free = 0.5 * (found[0] + found[1])
+    free = 0.5 * (found[0] + found[1])  # kappa delta, from the parts of both bodies
     values = Contacts(table, 1.0, 1.0).fields(u, free, *_COVER_FIELDS)
+    # at kappa = mu = 1 the limit L is 2 delta_star
     errors |= {"lam": values[0] / lam - 1.0, "limit": 2.0 * values[1] / L - 1.0}
     errors["epsilon"] = np.divide(
         values[2] - epsilon, epsilon, out=np.zeros(count), where=epsilon > 0.0
@@ -459,6 +467,7 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
         checks.append(
             Check(f"grid: {name}, nodes", nodes[name], NODES_ALLOWED, f"{kind}; all, against rows")
         )
+        # a field of zeros, as M of elastic bodies, has no such bound
         most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
         allowed = min(SAMPLE_RATIO * float(table[name].attrs["spline_error"]) + ROUNDING, most)
         meaning = f"absolute; {count} points, against rows"

@@ -130,7 +130,7 @@ def _write_modelica(table: Dataset, path: Path) -> None:
         )
     V = table["V"].values
     delta = table["delta"].values
-    head = np.append(0.0, delta)
+    head = np.append(0.0, delta)  # Modelica does not read the corner, but it must be there
     matrices = {
         name: np.vstack([head, np.column_stack([V, plane[name].values])])
         if "delta" in plane[name].dims
@@ -203,6 +203,7 @@ def _write_matlab(table: Dataset, path: Path) -> None:
     from scipy.io import savemat
 
     names = table_files.fields_of(table)
+    # lookup blocks want no axes of one node
     arrays = {name: table[name].values.squeeze() for name in (*table_files.axes_of(table), *names)}
     content = arrays | {
         "dimensions": {name: ", ".join(map(str, table[name].squeeze().dims)) for name in names},
@@ -244,11 +245,11 @@ def _write_header(dataset: Dataset, path: Path) -> None:
     constants = (_table_constants if coupled else _law_constants)(table, name)
     evaluator = "".join(
         files("viscoroll.tables").joinpath(f"c/{part}.h").read_text(encoding="utf-8")
-        for part in ("vr_law", "vr_table")[: 1 + coupled]
+        for part in ("vr_law", "vr_table")[: 1 + coupled]  # vr_table.h needs vr_law.h
     )
     material = "\n".join(
         f" * {line}".rstrip() for line in dataset.attrs["material"].splitlines()
-    ).replace("*/", "* /")
+    ).replace("*/", "* /")  # a name in the material may end the comment
     write_text(
         path,
         f"""/* {dataset.attrs["title"].replace("*/", "* /")}
@@ -274,11 +275,14 @@ def _law_constants(table: LawTable, name: str) -> str:
     """
     from ..kernels.law.cover_law import CYLINDER_PART
 
+    # alpha; the limit of lam, which C computes itself; and W and C of both bodies together, of the
+    # half-space and of the cylinder
     front = table.record.rows[:8]
     arrays = {f"{name}_coefficients": table.coefficients}
     fields = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays]
-    of_cover = ["0", "{0.0}"]
+    of_cover = ["0", "{0.0}"]  # a null pointer, and zeros in the array ``fast``
     if table.cover is not None:
+        # functions last, as in the coefficients: (rows, powers, functions)
         arrays[f"{name}_creep"] = np.moveaxis(table.cover.creep, 0, -1)
         of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:CYLINDER_PART])]
     constants = "".join(
@@ -302,9 +306,10 @@ def _table_constants(table: LawTable, name: str) -> str:
     from ..kernels.law import coupled_splines as layout
 
     rows: Any = table.coupled
-    count = rows.u.size + 2
+    count = rows.u.size + 2  # with the limits of u = 0 and of u infinite
     begin = rows.vector[[layout.EDGES, layout.FIELDS]].astype(int)
     edges = rows.vector[begin[0] : begin[1]].reshape(count, layout.EDGE_COUNT, 2)
+    # fields before WORK, the first in the vector: C has neither the works of shear nor friction
     jets = rows.vector[begin[1] :].reshape(-1, layout.JET)[: layout.WORK * count * rows.t.size]
     numbers = ", ".join(map(repr, (rows.mu, rows.u[0].item(), rows.u[-1].item())))
     return (
@@ -319,6 +324,7 @@ def _initializer(values: Floats) -> str:
     """Return an array as a nested initializer of C, with digits that read back to the same bits;
     NaN becomes NAN.
     """
+    # JSON has the shortest digits that read back, and brackets in place of braces
     text = json.dumps(values.tolist(), separators=(",", ":")).replace("],", "],\n")
     return text.translate(str.maketrans("[]", "{}")).replace("NaN", "NAN")
 

@@ -118,6 +118,7 @@ def check_grid(table: Any, path: Any) -> None:
         if dims != own:
             raise FileError(path, f"variable {name!r} has the dimensions {dims}: must be {own}")
         unit = table[name].attrs.get("units")
+        # a grid of a cylinder, in SI units, states its load; that of a scene has none
         written = attributes(name, "load" in about)["units"]
         if unit != written:
             allowed = (
@@ -192,6 +193,7 @@ def save(table: Dataset, path: str | PathLike[str]) -> None:
     """
     check_content(table, path)
     plain = table.copy()
+    # a table that was read has the encoding of its file, which may be another program's
     for variable in plain.variables.values():
         variable.encoding = {}
     # Compression does not make the coefficients of a law smaller: their last digits are noise.
@@ -232,6 +234,7 @@ def load(path: str | PathLike[str]) -> Dataset:
 
     content = read_sealed(path, _MAX_BYTES, "table of viscoroll", "build it again")
     try:
+        # numbers as they are written: no fill values as NaN, no seconds as durations
         table = xr.load_dataset(
             io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False
         )
@@ -384,6 +387,7 @@ class Interpolant:
                 values = values(np.stack([coordinates[dim] for dim in dims], axis=-1))
             if name in self._bounds:
                 values = np.clip(values, *self._bounds[name])
+            # a field over fewer axes than the points is repeated; copied, so that it can be written
             results[name] = np.broadcast_to(values, shape).copy() if shape else float(values)
         return Values(results, title="Interpolated", si="load" in self._table.attrs)
 
@@ -460,7 +464,7 @@ class Interpolant:
         }
         shape = broadcast_shape(**arrays)
         for name, array in arrays.items():
-            low, high = axes[name].values[[0, -1]]
+            low, high = axes[name].values[[0, -1]]  # an axis ascends
             outside = (array < low) | (array > high)
             if outside.any():
                 raise OutOfTableError(name, float(array[outside].flat[0]), low, high)

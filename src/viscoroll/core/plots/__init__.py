@@ -76,7 +76,7 @@ def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[
     place stays empty.
     """
     columns = min(2, count)
-    rows = -(-count // columns)
+    rows = -(-count // columns)  # rounded up
     figure, grid = new_figure(title, rows, columns, 0.8 + height * rows, squeeze=False, **options)
     for axes in grid.flat[count:]:
         axes.remove()
@@ -101,7 +101,8 @@ def plot_measured_range(
         return list(axes.plot(x, y, **line))
     outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
     solid = np.where(outside, np.nan, y)
-    # The dashed curve begins at the last measured point.
+    # The dashed curve begins at the last measured point.  The second assignment overwrites the
+    # first but at the last point: a point counts as outside if it or the next one is.
     outside[1:], outside[:-1] = outside[1:] | outside[:-1], outside[:-1] | outside[1:]
     drawn = axes.plot(x, solid, **line | {"linestyle": "-"})
     return [
@@ -324,6 +325,7 @@ def field_curves(data: Dataset) -> Figure:
     x = data[first].values
     second = others[:1]
     x = x.astype(str) if x.dtype.kind in "Om" else x  # matplotlib places texts evenly
+    # of fewer than four values some are equal, which np.unique below removes
     indices = np.linspace(0, data.sizes[second[0]] - 1, len(LINES)).astype(int) if second else [0]
     for name, axes in zip(names, panels, strict=True):
         for index, line in zip(np.unique(indices).tolist(), LINES, strict=False):
@@ -355,6 +357,7 @@ def stresses(data: Dataset) -> Figure:
     names = [name for name in ("p", "tau") if name in data]
     figure, axes = new_figure(f"Pressure{' and shear stress' * ('tau' in names)} along the contact")
     x = data["x"]
+    # first axis along which x varies; of the other axes the first state is drawn
     along = next((dim for n, dim in enumerate(x.dims) if np.diff(x.values, axis=n).any()), None)
     data = data.isel(dict.fromkeys(set(data.dims) - {along}, 0))
     for name, line in zip(names, LINES, strict=False):
@@ -402,6 +405,7 @@ def equilibria(data: Dataset) -> Figure:
     axes.set(xlabel=variable_label(data[load]), ylabel=variable_label(data["V"]))
     speeds = np.abs(_finite(data["V"]))
     speeds = speeds[speeds > 0.0]
+    # the initial values make it false where all speeds are 0
     if speeds.max(initial=0.0) > 100.0 * speeds.min(initial=np.inf):
         axes.set_yscale("symlog", linthresh=speeds.min())  # it has a place for rest, V = 0
     if data["V"].attrs.get("units", "1") != "1" and speeds.max(initial=0.0) > _FASTEST:
@@ -431,6 +435,7 @@ def motion(data: Dataset) -> Figure:
         f"Motion{status}", len(rows), 1, 1.0 + 1.7 * len(rows), sharex=True, squeeze=False
     )
     t = data["t"].values
+    # zeros at both ends close each interval: (first time that slides, first one after it), indices
     slips = np.concatenate(([0], data["regime"].isin(_SLIDING).values, [0]))
     ends = np.flatnonzero(np.diff(slips)).reshape(-1, 2)
     for axes, names in zip(grid.flat, rows, strict=True):
@@ -442,6 +447,7 @@ def motion(data: Dataset) -> Figure:
         axes.set_ylabel("\n".join(variable_label(data[name]) for name in names))
         if len(names) > 1:
             small_legend(axes)
+    # of a single time an axis of length 1, as matplotlib warns of one without length
     grid[-1, 0].set(
         xlabel=variable_label(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0)
     )
@@ -491,7 +497,7 @@ def _add_corners(data: Dataset, name: str) -> tuple[NDArray, NDArray]:
     found = np.concatenate(
         [values[kept], np.interp(corners[within], t[kept], other_loads) + given[within]]
     )
-    order = np.argsort(times, kind="stable")
+    order = np.argsort(times, kind="stable")  # both sides of a jump stay in their order
     return times[order], found[order]
 
 

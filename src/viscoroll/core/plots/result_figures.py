@@ -49,17 +49,20 @@ def master_curve(material: Any) -> Figure:
     """
     if material.is_rigid:
         raise ParameterError("material", "rigid", "a material with a finite modulus")
+    # an elastic material has no times: 1 in their place, about which its constant moduli are drawn
     times = material.T_ref * np.concatenate(
         [material.prony.T, material.prony.tau, [1.0][: not material.prony.E.size]]
     )
     ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
     t = np.logspace(*ends, _POINTS)
-    omega = 1.0 / t[::-1]
+    omega = 1.0 / t[::-1]  # reversed, so that it ascends
     title = (material.name or "Material") + (
         "; dashed: outside the measured band" if material.measured else ""
     )
     figure, (left, right) = new_figure(title, 1, 2, 3.4)
+    # None without a record, else lowest and highest frequency
     band = material.measured and (material.measured.low, material.measured.high)
+    # [:1]: the legend has the solid part of each curve
     lines = plot_measured_range(left, omega, material.storage(omega), band, **LINES[0], label="E'")[
         :1
     ]
@@ -140,7 +143,7 @@ def identification(fit: Any) -> Figure:
     for column, (top, bottom) in zip(shown, grid.T, strict=True):
         record = fit.records[column.record]
         band = getattr(fit.predicted[column.record], column.quantity)
-        *others, variable = record.COORDINATES
+        *others, variable = record.COORDINATES  # as t, or V and delta: the last one is drawn over
         curves = bool(others)  # of several speeds, which one line cannot connect
         order = np.argsort(np.ravel(getattr(record, variable)), kind="stable")
         arrays = getattr(record, variable), fit.sigma[str(column)], *band
@@ -228,6 +231,7 @@ def distributions(data: Dataset) -> Figure:
             axes.set_xlabel(f"{label} at the end" if "t" in variable.dims else label)
             _draw_histogram(axes, data, name)
         for axes in (left, *right):
+            # matplotlib refuses these settings for a logarithmic axis
             linear = "x" if axes.get_yscale() == "log" else "both"
             axes.locator_params(nbins=6 if axes is left else 4, axis=linear)
             axes.ticklabel_format(style="sci", scilimits=(-2, 5), axis=linear)
@@ -262,6 +266,7 @@ def _draw_histogram(axes: Any, data: Dataset, name: str) -> None:
         bars.size > 1 and bars.max() > _ONE_BAR * bars.sum()
     ):  # as at rest: the other bars would not be visible
         axes.set_yscale("log")
+    # parts of bins need not sum to a whole number by rounding
     if outside := int(counts.sum() - round(bars.sum())):
         axes.set_title(f"{outside} more beyond the ends", fontsize="small")
 
@@ -280,6 +285,7 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     at least 1, with all motions of these bins.
     """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
+    # first bins up to whose end there are a thousandth of the motions, and all but a thousandth
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
     last = min(last, counts.size - 1)
     if high[-1] - low[0] <= _WIDER * (high[last] - low[first]):
@@ -291,6 +297,8 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
             keepdims=True
         )
     edges = np.linspace(start, end, min(_MOST_BARS, 2 * math.isqrt(counts.sum())) + 1)
+    # motions below each end, in the order low, high, low, high: within a bin they grow evenly, and
+    # in a gap between bins not at all
     below = np.append(0, np.repeat(np.cumsum(counts), 2))[:-1]
     return edges, np.diff(np.interp(edges, np.ravel([low, high], "F"), below))
 
@@ -310,6 +318,7 @@ def sobol_bars(indices: Dataset) -> Figure:
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
     shown = [_last_indices(indices, name) for name in names]
+    # minus: descending
     order = np.argsort(-np.max([values["ST"] for _, values in shown], axis=0), kind="stable")
     inputs = [
         _INITIAL_SYMBOLS.get(name) or axis_label(name) for name in indices["input"].values[order]
@@ -361,6 +370,7 @@ def _last_indices(indices: Dataset, name: str) -> tuple[str, dict[str, NDArray]]
     text = _RESULT_NAMES.get(name) or axis_label(name)
     if values["S1"].ndim == 1:
         return text, values
+    # at a time without indices those of all inputs are NaN
     last = np.flatnonzero(np.isfinite(values["S1"][:, 0]))[-1]
     time = with_unit(
         f"{axis_label('t')} = {indices['t'].values[last]:g}", indices["t"].attrs["units"]
