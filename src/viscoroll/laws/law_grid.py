@@ -315,7 +315,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
         if name in table.variables and not (name in _MOMENTS and "delta" in table[name].dims):
             values = table[name].values
             rounding = _ROUNDING * np.abs(values).max()
-            bad = (values < low - rounding) | (values > high + _ROUNDING)
+            bad = (values < low - rounding) | (values > high + rounding)
             _refuse_nodes(
                 table[name],
                 bad,

@@ -101,13 +101,14 @@ def plot_measured_range(
         return list(axes.plot(x, y, **line))
     outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
     solid = np.where(outside, np.nan, y)
-    # The dashed curve begins at the last measured point.  The second assignment overwrites the
-    # first but at the last point: a point counts as outside if it or the next one is.
-    outside[1:], outside[:-1] = outside[1:] | outside[:-1], outside[:-1] | outside[1:]
+    # The dashed curve begins at the last measured point: neighbours of points outside are drawn too.
+    dashed = outside.copy()
+    dashed[1:] |= outside[:-1]
+    dashed[:-1] |= outside[1:]
     drawn = axes.plot(x, solid, **line | {"linestyle": "-"})
     return [
         *drawn,
-        *axes.plot(x, np.where(outside, y, np.nan), **line | {"linestyle": "--", "label": None}),
+        *axes.plot(x, np.where(dashed, y, np.nan), **line | {"linestyle": "--", "label": None}),
     ]
 
 
