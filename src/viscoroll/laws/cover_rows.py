@@ -320,7 +320,8 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     # lam/2 is the half contact divided by l0, as is the thickness
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
         allowed = (
-            f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
+            f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long; "
+            "take a thicker layer or a smaller load (l0: contact length at rest of half-spaces)"
         )
         raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
     if not modes.series.a.size:

@@ -144,8 +144,14 @@ def identify(
     for name, value, kind, allowed in (
         ("cylinder", cylinder, Cylinder, "a Cylinder"),
         ("unknown", unknown, Mapping, "{name: (low, high)}"),
-        ("data", data, Iterable, "a list of records"),
-        ("shift", shifts, Mapping, "a function, or one for each body"),
+        ("data", data, Iterable, "a list of records: vr.Resistance, vr.Traction or vr.Coastdown"),
+        (
+            "shift",
+            shifts,
+            Mapping,
+            "a vr.WLF, a vr.Arrhenius or a function of the temperature in degrees Celsius, or "
+            "{'material': ..., 'base': ...} with one for each body",
+        ),
         ("prior", prior, Mapping, "{name: (value, standard deviation)}"),
     ):
         if not isinstance(value, kind):

@@ -189,7 +189,11 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
     if isinstance(what, LawTable) and what.cover is None:
         what = Scene(kappa=1.0, mu=1.0, material=what)
     if not isinstance(what, Scene | Cylinder):
-        raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law of half-spaces")
+        raise ParameterError(
+            "what",
+            f"{what!r:.60}",
+            "a Scene, a Cylinder or a law of half-spaces; of a body with a layer give the Cylinder",
+        )
     if shape := (what if isinstance(what, Scene) else what.scene()).shape:
         raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
     if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):

@@ -118,9 +118,14 @@ def law(
     check_one_given(material=material, alpha=alpha)
     table: LawTable | law_table.LawAxis
     if alpha is not None:
-        if base is not None or np.shape(alpha) != (2,):
+        if base is not None:
+            raise ParameterError("base", f"{base!r:.60}", "left out beside alpha")
+        if np.shape(alpha) != (2,):
             raise ParameterError(
-                "alpha", f"{alpha!r:.60}", "the lowest and the highest value, for example (1, 4096)"
+                "alpha",
+                f"{alpha!r:.60}",
+                "a range (lowest, highest), for example (1, 4096); for a single alpha give that "
+                "number as material",
             )
         table = law_table.law_axis(*alpha)
     elif isinstance(material, Cylinder):

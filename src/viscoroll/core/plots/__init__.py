@@ -101,7 +101,7 @@ def plot_measured_range(
         return list(axes.plot(x, y, **line))
     outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
     solid = np.where(outside, np.nan, y)
-    # The dashed curve begins at the last measured point: neighbours of points outside are drawn too.
+    # The dashed curve begins at the last measured point: neighbours of points outside belong to it.
     dashed = outside.copy()
     dashed[1:] |= outside[:-1]
     dashed[:-1] |= outside[1:]
