@@ -138,7 +138,7 @@ class Result:
         Raises
         ------
         TypeError
-            Of an :class:`viscoroll.Identification` and of the results of a run: they have
+            Of an ``Identification`` and of the results of a run: they have
             attributes alone.
 
         Examples

@@ -38,7 +38,7 @@ def export(table: Dataset, path: str | PathLike[str]) -> None:
 
     Parameters
     ----------
-    table : dataset of :func:`law`, :func:`build` or :func:`load`, all of :mod:`viscoroll.tables`.
+    table : dataset of :func:`law`, :func:`build` or :func:`load`, all of ``viscoroll.tables``.
     path : file to write, whose suffix, also in capitals, selects the format; a file of that name is
         replaced.  For a law and a grid: .nc (netCDF-4), or .cdf (netCDF-3, for readers without
         HDF5).  For a law: .h (C99 and C++: table and evaluator in one header) or .json.  For a

@@ -171,7 +171,7 @@ def save(table: Dataset, path: str | PathLike[str]) -> None:
 
     Parameters
     ----------
-    table : dataset of :func:`law`, :func:`build` or :func:`load`, all of :mod:`viscoroll.tables`.
+    table : dataset of :func:`law`, :func:`build` or :func:`load`, all of ``viscoroll.tables``.
     path : file to write; a file of that name is replaced.
 
     Raises
