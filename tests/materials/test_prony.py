@@ -43,8 +43,11 @@ def test_forms_belong_together(drawn):
     assert (m.a[:-1] < m.b[1:]).all()
     assert close(p.T_mean, (m.J / m.b).sum(), tol.SERIES_FORMS)
     back = vr.Prony.creep(m.J, 1.0 / m.b, alpha=p.alpha)
-    assert close(back.tau, p.tau, tol.SERIES_BACK)
-    assert close(back.E, p.E, tol.SERIES_BACK)
+    assert close(back.tau, p.tau, tol.SERIES_FORMS)
+    # rounding of the rates, over the relative distance of the closest two of both forms
+    rates = np.sort(np.concatenate([m.a, m.b]))
+    closest = min(1.0, (np.diff(rates) / rates[:-1]).min())
+    assert close(back.E, p.E, tol.SERIES_BACK / closest)
 
 
 def scene(material, **changes):
