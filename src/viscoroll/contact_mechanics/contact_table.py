@@ -526,7 +526,7 @@ class Contacts(NamedTuple):
         Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it, and of a
         table; the float 0.0 of half-spaces.
         """
-        if self.law.cover is None and self.law.coupled is None:
+        if self.law.moment_of_speed_alone:
             return 0.0
         return self.fields(V, 0.0, "delta_0")[0]
 

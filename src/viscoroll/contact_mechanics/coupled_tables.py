@@ -230,10 +230,7 @@ def _hold_rest(fields: Floats, middle: int) -> None:
     Returns None.
     """
     fields[middle, 0] = 0.0
-    moments = fields[middle, 1:3].copy()
-    fields[:, 1:3] -= moments
-    # what a body loses, M_b + W_b, stays; columns are kappa M_b and 2 kappa W_b
-    fields[:, 6:8] += 2.0 * moments
+    _shift_moments(fields, -fields[middle, 1:3])
 
 
 def _hold_friction(
@@ -250,13 +247,21 @@ def _hold_friction(
     sides: bodies that deform, of "base" and "cylinder", between which the shift is divided equally.
     Returns None.
     """
-    columns = [1 + ("base", "cylinder").index(side) for side in sorted(sides)]
-    found = float(_spline(t, fields[:, columns].sum(axis=1), place)(place))
-    shift = (friction - found) / len(columns)
-    for column in columns:
-        # M_b + W_b, what the body loses, stays: kappa M_b in this column, 2 kappa W_b five on
-        fields[:, column] += shift
-        fields[:, column + 5] -= 2.0 * shift
+    deforms = np.array([side in sides for side in ("base", "cylinder")])
+    found = float(_spline(t, fields[:, 1:3][:, deforms].sum(axis=1), place)(place))
+    _shift_moments(fields, np.where(deforms, (friction - found) / deforms.sum(), 0.0))
+
+
+def _shift_moments(fields: Floats, shifts: Floats) -> None:
+    """Add to kappa M of base and cylinder, and keep the loss of each body by changing its work.
+
+    fields: fields of the row, (m, 8), changed.
+    shifts: what is added to kappa M of each body, (2,).
+    Returns None.
+    """
+    # M_b + W_b, what the body loses, stays: kappa M_b in columns 1 and 2, 2 kappa W_b in 6 and 7
+    fields[:, 1:3] += shifts
+    fields[:, 6:8] -= 2.0 * shifts
 
 
 def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:

@@ -215,9 +215,8 @@ def scan_states(law: LawTable, loads: Loads) -> States:
         for sign in (1.0, -1.0):
             # a motion towards -x is the mirror image: its loads have the other sign, its gains stay
             problem = _ScanProblem(contacts, np.hstack([sign * at_rest, gained]))
-            is_layer = law.cover is not None or law.coupled is not None
             # of half-spaces slip follows from the speed unless the gains on omega cancel
-            by_speed = is_layer or problem.load_rows[:, 2].sum()
+            by_speed = not law.moment_of_speed_alone or problem.load_rows[:, 2].sum()
             x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
             rows = _polish(problem, np.exp2(x) / contacts.kappa, slip)
             count = rows.shape[1]
@@ -255,7 +254,7 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     total = loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
     law = contacts.law
-    if law.cover is not None or law.coupled is not None or not (gain and total):
+    if not (law.moment_of_speed_alone and gain and total):
         return []
     # the sum of both balances without M; then that of the axis must hold with Q = +-mu
     omega = -total / gain
@@ -576,7 +575,7 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()
-    if law.coupled is not None or law.cover is not None:
+    if not law.moment_of_speed_alone:
         load, sign, V = find_speeds(law, loads)
         return states_at(law, loads, load=load, sign=sign, V=V)
     load, sign, u = find_crossings(law, gain, total)

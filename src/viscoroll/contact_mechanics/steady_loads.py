@@ -440,7 +440,7 @@ def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     loads : the loads, dimensionless, of which force and torque are read.
     Returns booleans, (n,).
     """
-    if law.coupled is None and law.cover is None:
+    if law.moment_of_speed_alone:
         return loads.force + loads.torque == 0.0
     contacts = Contacts(law, loads.kappa, loads.mu)
     if law.coupled is not None:

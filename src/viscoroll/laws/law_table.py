@@ -257,6 +257,13 @@ class LawTable:
         return lock_array(fit_unsteady(self.material, table, self.e0))
 
     @cached_property
+    def moment_of_speed_alone(self) -> bool:
+        """Whether M depends on the speed alone, and free rolling has no creepage: by rows of
+        half-spaces, neither of a cover nor by a table of the coupled solution.
+        """
+        return self.cover is None and self.coupled is None
+
+    @cached_property
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`.law_record.Law`)."""
         made = pack_record(

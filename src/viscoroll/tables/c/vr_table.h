@@ -113,17 +113,17 @@ static inline vr_state vr_table_contact(const vr_table *table, double kappa, dou
 static inline vr_slopes vr_table_slopes(const vr_table *table, double kappa, double V, double slip) {
   enum { COUNT = 3 };
   double over_V[COUNT], over_omega[COUNT], u = kappa * fabs(V), delta = vr_creepage(V, slip);
-  int n, valid = kappa > 0.0 && u <= 1e300 && fabs(slip) < HUGE_VAL && delta == delta;
+  vr_slopes none = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+  if (!(kappa > 0.0 && u <= 1e300 && fabs(slip) < HUGE_VAL && delta == delta)) return none;
+  vr_table_place p = vr_table_at(table, u, 2.0 * kappa * delta);
+  int n;
   for (n = 0; n < COUNT; n++) {
-    over_V[n] = over_omega[n] = valid ? 0.0 : NAN;
-    if (!valid) continue;
-    vr_table_place p = vr_table_at(table, u, 2.0 * kappa * delta);
     double factor = n ? 1.0 / kappa : table->mu;
     int full = n == 0 && (p.w >= 1.0 || fabs(vr_field(table, &p, p.row.w, p.node.w, n)) >= 1.0);
     double by_w = full ? 0.0 : factor * vr_field(table, &p, p.row.w, p.node.d, n);
     double by_u = full ? 0.0 : factor * vr_field(table, &p, p.row.d, p.node.w, n);
     double by_delta = (V < 0.0 ? -2.0 : 2.0) * kappa * by_w * p.dw_dD;
-    over_V[n] = kappa * (by_u + by_w * p.dw_du); /* at fixed creepage */
+    over_V[n] = kappa * (by_u + by_w * p.dw_du), over_omega[n] = 0.0; /* at fixed creepage */
     if (by_delta != 0.0) over_V[n] -= by_delta * (1.0 + delta) / V, over_omega[n] = by_delta / V;
   }
   vr_slopes d = {over_V[0], over_omega[0], over_V[1] + over_V[2], over_V[1], over_V[2], over_omega[1], over_omega[2]};
