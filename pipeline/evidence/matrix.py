@@ -2,7 +2,8 @@
 dependencies.
 
     python -m pipeline.evidence.matrix            all of them; the whole suite once, on the newest Python
-    python -m pipeline.evidence.matrix --quick    newest dependencies on the newest Python, from the wheel; no suite
+    python -m pipeline.evidence.matrix --quick    newest dependencies on the newest Python, from the wheel; README and
+                                                  contact states alone
 
 A case is a fresh environment outside the tree.  The newest dependencies come with the wheel, the
 lowest, which the metadata declare for this Python, with the sdist.  There the program answers once,
@@ -35,14 +36,19 @@ from ..stage import ROOT, said
 #: what the tests below import beside the package and its extra
 TOOLS = ("hypothesis", "mpmath", "pytest", "python-flint")
 ASKED = ("roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3")
-SAMPLE = (
+#: what a user does first, and numbers that another NumPy or numba would change
+FIRST_STEPS = (
     "tests/docs/test_readme.py::test_readme_block_runs",
+    "tests/test_claims.py::test_claims[contact]",
+)
+SAMPLE = (
+    *FIRST_STEPS,
     "tests/docs/test_readme.py::test_howto_runs",
     "tests/docs/test_readme.py::test_run_file_pages_can_be_followed",
-    "tests/test_claims.py::test_claims[contact]",
     "tests/test_claims.py::test_claims[check_motions]",
     "tests/motion/test_flow.py::test_as_the_integrator_to_its_stated_error",
 )
+SUITE = ("-n", "2")
 _VERSION = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
 
 
@@ -58,12 +64,14 @@ class Packages(NamedTuple):
 
 
 class Case(NamedTuple):
-    """``lowest`` dependencies or the newest; the whole ``suite`` or the sample."""
+    """A Python at ``python``, its ``lowest`` dependencies or the newest, and the ``tests`` to run,
+    arguments of pytest.
+    """
 
     version: str
     python: str
     lowest: bool
-    suite: bool
+    tests: tuple[str, ...]
 
     def __str__(self) -> str:
         return f"Python {self.version}, {'lowest' if self.lowest else 'newest'} dependencies"
@@ -80,9 +88,12 @@ def main():
     chosen = (
         [(newest, False)] if quick else [(each, low) for each in found for low in (False, True)]
     )
+    cases = [Case(version, found[version], low, SAMPLE) for version, low in chosen]
     cases = [
-        Case(version, found[version], low, suite=not quick and (version, low) == (newest, False))
-        for version, low in chosen
+        each._replace(tests=FIRST_STEPS if quick else SUITE)
+        if (each.version, each.lowest) == (newest, False)
+        else each
+        for each in cases
     ]
     with tempfile.TemporaryDirectory(prefix="viscoroll-matrix-") as folder:
         packages = built(Path(folder))
@@ -163,9 +174,8 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     binaries = place / "env" / ("Scripts" if os.name == "nt" else "bin")
     python = str(binaries / "python")
     program = str(binaries / "viscoroll")
-    package = (
-        f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
-    )
+    extra = "dev" if case.tests is SUITE else "runs"
+    package = f"{packages.sdist if case.lowest else packages.wheel}[{extra}]"
     pip = [
         python,
         *["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"],
@@ -178,7 +188,7 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
         "installation": ([*pip, "-c", place / "constraints.txt", package, *TOOLS], place),
         "versions": ([python, "-m", "pip", "freeze"], place / "work"),
         "program": ([program, *ASKED], place / "work"),
-        "tests": ([*test, *(("-n", "2") if case.suite else SAMPLE)], packages.tree),
+        "tests": ([*test, *case.tests], packages.tree),
     }
     # without PYTHONDONTWRITEBYTECODE: pip compiles nothing ahead, so what is imported is to be kept
     dropped = ("PYTHONPATH", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
@@ -199,7 +209,7 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
             print(f"matrix: {case}: {name} failed\n{done.stdout[-4000:]}", flush=True)
             return False
         told[name] = done.stdout.splitlines()
-    kind = "the whole suite" if case.suite else "sample"
+    kind = "the whole suite" if case.tests is SUITE else "sample"
     print(
         f"matrix: {case} ({time.monotonic() - begun:.0f} s): {kind}: {told['tests'][-1]}",
         flush=True,
