@@ -257,7 +257,8 @@ def test_conductance_of_film_and_cover():
         assert close(
             vr.conductance(R, film=film, thickness=h, conductivity=k, core=core), expected, 1e-3
         )
-    assert close(vr.conductance(R, film=film), 2.0 * np.pi * R * film, 1e-15)
+    for cover in ({}, {"thickness": 0.05}):  # nothing is conducted: the film of the surface alone
+        assert close(vr.conductance(R, film=film, **cover), 2.0 * np.pi * R * film, 1e-15)
     assert not vr.uniform_temperature(20.0, h, k).holds
 
 

@@ -47,7 +47,7 @@ def test_what_others_may_have_written_is_not_read(folder):
     assert not kept(2.0)
     assert path.read_bytes().startswith(b"others")
     folder.chmod(0o755)
-    with pytest.warns(RuntimeWarning, match="is damaged"):
+    with pytest.warns(RuntimeWarning, match="cannot be used"):
         assert not kept(2.0)
     assert kept(2.0)
 
@@ -66,6 +66,6 @@ def test_a_damaged_map_is_built_again(folder, damage):
         kept(number)
     path, other = (place(number)[1] for number in (2.0, 3.0))
     path.write_bytes(DAMAGE[damage](path.read_bytes(), other.read_bytes()))
-    with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\) and is built again"):
+    with pytest.warns(RuntimeWarning, match=r"flow map cannot be used \(.+\) and is built again"):
         assert not kept(2.0)
     assert kept(2.0)

@@ -228,7 +228,7 @@ REFUSED = [
     *each(
         lambda make, n=16: sobol_indices(make(), n),
         {
-            "n = 1024: must be less, or t shorter: | quantities and times": (
+            "n = 1024 (n is rounded up to a power of two): | take a smaller n, fewer times": (
                 partial(
                     run,
                     "numbers",

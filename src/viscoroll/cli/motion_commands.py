@@ -228,8 +228,8 @@ def steady(arguments: Namespace) -> None:
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
-        # takes the place of all further lines; the right side is computed before
-        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have no steady speed"]
+        further = len(lines) - _MOST_LINES
+        lines[_MOST_LINES:] = [f"{further} further loads, counted from 0, have no steady speed"]
     if (
         arguments.output is not None or arguments.format != "text"
     ):  # a table for programs has no heading

@@ -409,7 +409,9 @@ class CoupledPair(NamedTuple):
             material = series_of_alpha(float(np.asarray(scene.alpha).item()))
         if material.shape:
             raise ParameterError(
-                "material", f"{material!r:.60}", "one material, as material[i], by method 'coupled'"
+                "material",
+                f"{material!r:.60}",
+                "one material, as material[i], since method='coupled' takes one at a time",
             )
         if isinstance(material, Bodies):
             shares = {"base": 1.0 - material.share, "cylinder": material.share}

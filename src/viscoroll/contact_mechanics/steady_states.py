@@ -124,8 +124,8 @@ class States(NamedTuple):
         answers: Floats,
         free: Floats | None = None,
     ) -> States:
-        """Make the states from the law at them: give V, Q and M their signs, and add omega and the
-        eigenvalues.
+        """Make the states from values of the law in a frame where V > 0: give V, Q and the moments
+        the signs of the motion, and add omega and the eigenvalues.
 
         loads : :class:`Loads`, the loads, of which the gains and j are used.
         load : index of the load of each state, (n,).

@@ -147,7 +147,7 @@ def evaluate_coupled(
     """
     pair = CoupledPair.of_scene(scene)
     if DEPTH in names and any(math.isinf(body.thickness) for body in pair.bodies):
-        allowed = "left out: a half-space in plane strain has no approach of the bodies"
+        allowed = "left out: in plane strain the approach of a half-space is infinite"
         raise ParameterError("fields", repr(DEPTH), allowed)
     states = _States(scene, V, creep, creep_is_omega)
     groups = states.groups()

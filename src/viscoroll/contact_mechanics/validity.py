@@ -395,16 +395,16 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
 
 
 def assess_traction(scene: Parameters, V: Any) -> Assumption:
-    """Return the assumption ``traction`` of a cover: shear acts back on the pressure as the law has
-    it.
+    """Return the assumption ``traction`` of a cover: the first-order effect of shear on the
+    pressure, which the fast law contains, is small enough.
 
     With delta_0* the mean strain mirrored about the middle of the contact (docs/theory_covers.md),
-    it holds where
-    |delta_0* - delta_0| is at most delta_star/2; beyond, both ends of the contact slip.  The
-    sentence states the largest errors of Q and M beside the coupled solution, where it holds
-    (docs/validity_covers.md; tested in tests/contact_law/test_fast_law.py).  That of Q is that
-    without coupling, 0.02 mu P and 0.4 mu P times the value; that of M follows, as M has the terms
-    Q delta_0 and Q (delta_0* - delta_0).
+    it holds where |delta_0* - delta_0| is at most delta_star/2; beyond, both ends of the contact
+    slip.  The sentence states the largest errors of Q and M beside the coupled solution, where it
+    holds (docs/validity_covers.md; tested in tests/contact_law/test_fast_law.py).  The error of Q
+    is the sum of the error without coupling, of 0.02 mu P, and of 0.4 mu P times the value (at
+    most 1).  The error of M follows from it, since M has the terms Q delta_0 and
+    Q (delta_0* - delta_0).
 
     scene: dimensionless parameters of a roller with a cover, or with an array of covers.
     V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.

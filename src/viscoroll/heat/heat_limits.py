@@ -326,8 +326,8 @@ def conductance(
     conductivity: Numbers | None = None,
     core: Literal["cooled", "insulated"] = "insulated",
 ) -> Any:
-    """Return the heat that a cylinder gives off per kelvin of its mean temperature, from film and
-    conduction.
+    """Return the heat that a cylinder gives off per kelvin of its mean temperature above ambient,
+    from film and conduction.
 
     Heat arises evenly in a solid cylinder, or in a cover of which the other side is at a core; it
     is conducted to the surface (in series with the film) and, of a cooled core, to the core too (in
@@ -379,8 +379,8 @@ def conductance(
         raise described_error("core", fault, "'insulated', or give both")
     if h is not None and np.any(h >= arrays["R"]):
         raise ParameterError("thickness", h, f"below R = {R}")
-    # circumference at the middle of the cover
-    width = 2.0 * math.pi * (arrays["R"] if h is None else arrays["R"] - 0.5 * h)
+    # circumference at the middle of the cover; of the surface where nothing is conducted
+    width = 2.0 * math.pi * (arrays["R"] if h is None or k is None else arrays["R"] - 0.5 * h)
     # with a source q of unit volume the mean rise of a slab is q h^2/(12 k) (4 + B)/(1 + B) if one
     # side is at ambient and the other has a film, B = film h/k; above the surface it is q h^2/(3 k)
     # if the other side is insulated, and q R^2/(8 k) in a solid cylinder

@@ -291,13 +291,15 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
                     covers.of_thickness(2.0**exponent, np.max(covers.nu)), many_nu
                 )
             except ParameterError as error:
-                thin = covers.thickness.min()
-                allowed = 2.0 ** (exponent + 1.0)
+                thin = float(covers.thickness.min())
+                # a cover that is refused alone is refused with that reason
+                cover_rows(covers.of_thickness(thin, np.max(covers.nu)))
                 reason = (
-                    f"at least {allowed} where covers differ: the laws of thinner ones are "
-                    "not interpolated"
+                    f"at least {2.0 ** (exponent + 1.0)} in a call with several values of it, "
+                    "between which laws are interpolated: make one call for each value, or take "
+                    "a thicker layer or a smaller load (l0: contact length at rest of half-spaces)"
                 )
-                raise ParameterError("thickness/l0", f"{thin}", reason) from error
+                raise ParameterError("thickness/l0", thin, reason) from error
     # for each cover the address of the laws of its octave and their number of rows
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]

@@ -106,12 +106,16 @@ class FromPrograms:
         """
         if tau is None:
             table = check_array("g", g, low=0.0)
-            if table.ndim != 2 or table.shape[1] != 3 or k is not None:
+            if table.ndim != 2 or table.shape[1] != 3:
                 sentence = (
-                    "tau is not given: give tau, or rows (g_i, k_i, tau_i) for g, here of "
-                    f"shape {table.shape}"
+                    "tau is not given: give tau, or rows (g_i, k_i, tau_i) as g; g has shape "
+                    f"{table.shape}"
                 )
                 raise ParameterError("tau", None, "one time for each g", sentence)
+            if k is not None:
+                raise ParameterError(
+                    "k", k, "left out beside rows (g_i, k_i, tau_i), which contain it"
+                )
             g, k, tau = table.T
         return cls._from_fractions(
             E0,

@@ -151,12 +151,13 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(fit: Any) -> str:
-    """Return a sentence on the products of unknowns that the data determine.
+    """Return a sentence on the products of powers of unknowns that the data determine.
 
     fit : a :class:`viscoroll.measurements.identification_result.Identification`.
-    Returns a sentence with the products that hold over the whole intervals, then those that hold
-    near the values found only, with the distance to which they do; with the latter alone if there
-    are no others, and one that says so if there are none at all.
+    Returns a sentence.  It names the products that are determined over the whole confidence
+    intervals, and then those that are determined only near the values found, with the distance
+    from these values.  Without products of the first kind it names the second kind alone; without
+    both it says that there are none.
     """
     found = fit.products()
     sure, near = (

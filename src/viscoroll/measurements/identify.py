@@ -415,7 +415,12 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     cylinder = read_roller(path, tuple(_SECTIONS))
     content = {"prior": {}} | read_toml(path)  # the one section that may be missing
     if not isinstance(cylinder, Cylinder):
-        raise section_error(path, "", "scene", "measurements are in SI units: give [cylinder]")
+        key = "scene" if "scene" in content else "preset"
+        found = "[scene]" if key == "scene" else f"preset = {content[key]!r:.40}"
+        problem = (
+            f"{found} is dimensionless, but measurements are in SI units: replace it by [cylinder]"
+        )
+        raise section_error(path, "", key, problem)
     for section, kind in _SECTIONS.items():
         if not isinstance(given := content.get(section), kind):
             header = "[[data]]" if kind is list else f"[{section}]"

@@ -161,7 +161,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     write to it or to a folder above it, or if one belongs to another user; None with a
     RuntimeWarning if its content is damaged or of other parameters.
     """
-    damaged = "the cached flow map is damaged ({}) and is built again"
+    damaged = "the cached flow map cannot be used ({}) and is built again"
     return load_kept(path, damaged, lambda data: _read(data, parameters))
 
 
@@ -174,7 +174,7 @@ def _read(data: Any, parameters: tuple[Any, ...]) -> FlowMap:
     that lacks an array.
     """
     if not np.array_equal(data["parameters"], _numbers(parameters)):
-        raise ValueError("it belongs to another scene")
+        raise ValueError("it was made for other parameters")
     if data["table"].shape != (flow_layout.SIZE,):
         raise ValueError("the size of its table is wrong")
     return FlowMap(

@@ -74,7 +74,8 @@ def refuse_end(end: float, T: float) -> None:
     Returns None for any other time.
     """
     if end / T == math.inf:
-        raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
+        allowed = f"less than {sys.float_info.max * min(T, 1.0):.3g}, since it is divided by T_ref"
+        raise ParameterError("t", end, allowed)
 
 
 def require_single(**arguments: Any) -> None:

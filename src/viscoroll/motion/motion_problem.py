@@ -183,9 +183,11 @@ def make_problem(
         require_single(material=roller.material, **roller.numbers)
     # one threshold in m/s would be another dimensionless number for each motion
     if rest is not None and np.ndim(scale["V"]):
-        raise ParameterError(
-            "rest", rest, "None", "rest needs the same R and T_ref (or T_epsilon) for all motions"
+        sentence = (
+            f"rest = {rest!r:.60} is one threshold in m/s for all motions, but R or T_ref "
+            "(T_epsilon) differs between them: leave rest out, or make a call for each R and T_ref"
         )
+        raise ParameterError("rest", rest, "None", sentence)
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     driven = unsteady or (acts and drive.acts)
     try:
@@ -263,7 +265,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     if not scene.like_bodies:
         sentence = (
             "unsteady = True: motions with the added mass N are computed for two bodies of "
-            "one material only"
+            "one material only: leave unsteady=True out"
         )
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     return True

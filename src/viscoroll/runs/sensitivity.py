@@ -253,13 +253,16 @@ def _outcomes(
     times = {
         name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries
     }
-    size = 8 * motions * sum(times.values())
+    numbers = sum(times.values())
+    size = 8 * motions * numbers
     if size > _MOST_BYTES:
-        allowed = (
-            f"less, or t shorter: {sum(times.values())} quantities and times would take "
-            f"{size / 1e9:.1f} GB"
+        each = motions // (len(cube) + 2)
+        sentence = (
+            f"n = {each} (n is rounded up to a power of two): {motions} motions of {numbers} "
+            f"numbers each would take {size / 1e9:.1f} GB, of which {_MOST_BYTES / 1e9:.1f} GB are "
+            "allowed: take a smaller n, fewer times in t or fewer summaries"
         )
-        raise ParameterError("n", motions // (len(cube) + 2), allowed)
+        raise ParameterError("n", each, "smaller", sentence)
     outcomes = {name: np.empty((count, motions)) for name, count in times.items()}
     status = np.empty(motions, np.int8)
 

@@ -96,7 +96,7 @@ def check_grid(table: Any, path: Any) -> None:
     about = table.attrs
     if is_law(table):
         raise FileError(
-            path, "is a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact"
+            path, "has a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact"
         )
     if str(about.get(KIND)) != GRID:
         problem = f"its attribute {KIND} is {about.get(KIND)!r:.40}, not {GRID!r}"

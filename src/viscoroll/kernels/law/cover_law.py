@@ -429,12 +429,15 @@ class CreepCurve(NamedTuple):
 
 @inline_kernel
 def creep_of(d, asymmetry, cover_rows):
-    """Return the :class:`CreepCurve` at d; d itself of half-spaces.
+    """Return the creep d + c d^2 of a cover, that is (delta - delta_0)/delta_star, and its
+    derivatives; of half-spaces it is d.
 
-    d : float, of either sign, dimensionless.
+    d : float, of either sign, dimensionless, the creepage of half-spaces divided by their
+        delta_star; beyond |d| = 1 the parabola is continued by its tangent.
     asymmetry : float, c; not read for half-spaces.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
-    half-spaces.
+        half-spaces.
+    Returns a :class:`CreepCurve`; of half-spaces with the value d, the slope 1 and zeros.
     """
     if cover_rows is None:
         return CreepCurve(d, 1.0, 0.0, 0.0, 0.0)
