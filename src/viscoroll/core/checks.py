@@ -224,15 +224,7 @@ def extent(array: Floats) -> tuple[float, float]:
     return float(array.min()), float(array.max())
 
 
-def check_number(
-    name: str,
-    value: ArrayLike,
-    *,
-    unit: Units = "1",
-    low: float = -math.inf,
-    above: float = -math.inf,
-    high: float = math.inf,
-) -> float:
+def check_number(name: str, value: ArrayLike, **bounds: Any) -> float:
     """Check an argument that is a single number, and return it as a float in the unit of the
     argument.
 
@@ -240,15 +232,12 @@ def check_number(
     ----------
     name : name of the argument, for errors.
     value : a number, perhaps with a unit.
-    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1",
-        "1" of a dimensionless number, or an object that has units by name.
-    low, high : smallest and largest allowed value, in ``unit``; infinite by default.
-    above : number that the value must exceed, in ``unit``; -infinite by default.
+    **bounds : ``unit``, ``low``, ``above`` and ``high`` as in :func:`check_array_extent`.
 
     Returns
     -------
     float
-        The finite number, in ``unit``.
+        The finite number, in the unit of the argument.
 
     Raises
     ------
@@ -256,13 +245,10 @@ def check_number(
         If it is not one finite number (an array with axes is refused, even of one element), if it
         is outside these limits, or if its unit has another dimension.
     """
-    # as in check_array_extent; a NaN or infinity goes on and is refused
-    if type(value) is float and above < value < high and low <= value:
-        return value
-    array = check_array(name, value, unit=unit, low=low, above=above, high=high)
+    array, (number, _) = check_array_extent(name, value, **bounds)
     if array.ndim:
         raise ParameterError(name, describe_value(value), "a single number")
-    return float(array)
+    return number
 
 
 def broadcast_shape(**arrays: Any) -> tuple[int, ...]:

@@ -371,8 +371,6 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     except OverflowError as error:
         problem = "has an integer of more than 64 bits: write it with a decimal point"
         raise FileError(path, problem) from error
-    except FileError:
-        raise
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
     except (

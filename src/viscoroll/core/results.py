@@ -356,9 +356,8 @@ class Values(Result):
         """
         shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
         title = self._title + (f", {shape}" if shape else "")
-        units = {name: unit_of(self._attributes(name)) for name in self._values}
         return title, [
-            SummaryRow(name, format_value(value), units[name])
+            SummaryRow(name, format_value(value), unit_of(self._attributes(name)))
             for name, value in self._values.items()
         ]
 
@@ -405,7 +404,7 @@ class Values(Result):
                 # netCDF has no truth values
                 numbers = array.astype(np.int8) if array.dtype == bool else array
                 whole = np.broadcast_to(numbers, shape) if array.ndim else numbers
-                data[name] = xr.Variable(dims if array.ndim else (), whole, self._attributes(name))
+                data[name] = dims if array.ndim else (), whole, self._attributes(name)
         return xr.Dataset(data, coords, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:

@@ -8,7 +8,7 @@ material.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,7 +29,6 @@ from ..kernels.records import (
     COL_COEFFICIENTS,
     COL_SCALE,
     COL_START,
-    N_DRIVE_FUNCTIONS,
     NOT_PRESCRIBED,
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
@@ -84,8 +83,8 @@ class DriveFunctions:
 
     Attributes
     ----------
-    functions : name -> :class:`.drive_pieces.Piecewise`; always "force", "torque" and "brake" (0
-        where not given), and the prescribed speed, "omega" or "V", if there is one.
+    functions : name -> :class:`.drive_pieces.Piecewise` of what is given of "force", "torque",
+        "brake" and the prescribed speed, "omega" or "V".
     tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
     gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last
@@ -115,7 +114,7 @@ class DriveFunctions:
         )
         return shape[0] if shape else 1
 
-    @property
+    @cached_property
     def counts(self) -> tuple[int, int]:
         """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
         all are alike.
@@ -126,19 +125,19 @@ class DriveFunctions:
         """
         return self._function_motions, self.gains.shape[1]
 
-    @property
+    @cached_property
     def corners(self) -> int:
         """Number of corners of a motion's schedules, and of pieces of its callables; 0 for numbers
         alone.
         """
         return sum(f.corners for f in self.functions.values())
 
-    @property
+    @cached_property
     def error(self) -> float:
         """Largest difference seen between a callable and its fit, dimensionless; 0.0 without
         callables.
         """
-        return max(f.error for f in self.functions.values())
+        return max((f.error for f in self.functions.values()), default=0.0)
 
     def block(self, most: int) -> int:
         """Return how many motions to pack at a time, so that their pieces take some
@@ -258,24 +257,18 @@ class DriveFunctions:
         )
 
 
-@cache
-def undriven() -> KernelDrive:
-    """Return the :data:`KernelDrive` of free motions: pieces (1, 1, columns) and gains (4, 1), all
-    0; NOT_PRESCRIBED.
-
-    The same arrays are returned by every call.
-    """
-    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
+#: Drive of free motions: nothing acts.
+UNDRIVEN = DriveFunctions({}, np.zeros(()), prescribed="", gains=np.zeros((4, 1)), end=0.0)
 
 
 class DrivenStart(NamedTuple):
     """The checked drive of motions with their start speeds, dimensionless.
 
-    functions : functions of time that drive the motions; None of free motions.
+    functions : functions of time that drive the motions; of free motions :data:`UNDRIVEN`.
     V0, omega0 : start speeds, numbers or (n,); a prescribed one has its value at t = 0.
     """
 
-    functions: DriveFunctions | None
+    functions: DriveFunctions
     V0: Any
     omega0: Any
 
@@ -294,25 +287,20 @@ def prepare_drive(
     both prescribed, or a load beside the prescribed speed from which it follows; for a start that
     is missing, out of range, or not the prescribed one; for shapes of V0 and omega0 that do not
     broadcast.  Exceptions of a callable pass.
-    Returns the :class:`DrivenStart`; its ``functions`` are None where the drive is empty, in which
-    case ``end``, ``rtol`` and ``resolve`` are ignored.
+    Returns the :class:`DrivenStart`; its ``functions`` are :data:`UNDRIVEN` where the drive is
+    empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
     if not drive.acts:
-        return DrivenStart(None, *start_speeds(V0, omega0))
+        return DrivenStart(UNDRIVEN, *start_speeds(V0, omega0))
     tangent = np.asarray(slope_tan_cos(drive.slope)[0])
     _refuse_both(drive)
-    prescribed = next((name for name in ("omega", "V") if getattr(drive, name) is not None), "")
-    names = ["force", "torque", "brake", *([prescribed] if prescribed else [])]
+    prescribed = "omega" if drive.omega is not None else "V" if drive.V is not None else ""
     functions = {
         name: piecewise(
-            name,
-            getattr(drive, name),
-            end,
-            rtol,
-            low=0.0 if name == "brake" else -np.inf,
-            resolve=resolve,
+            name, given, end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
         )
-        for name in names
+        for name, given in drive.given.items()
+        if name not in ("slope", "drag")
     }
     checked_drive = DriveFunctions(
         functions=functions, tangent=tangent, prescribed=prescribed, gains=_gains(drive), end=end
@@ -403,24 +391,20 @@ def _gains(drive: Drive) -> Floats:
     return np.array([np.broadcast_to(row, count) for row in rows])
 
 
-def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
+def refuse_rest(rest: Any, functions: DriveFunctions) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
     rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is
     not examined but only quoted in the message, so that the caller must not call this function
     where it is None.
-    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`; None of
-    free motions, which may end at rest.
+    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`.
     Returns None where the motion may end at rest.
     """
-    if functions is not None and functions.acts_at_end:
+    if functions.acts_at_end:
         sentence = (
-            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the "
-            "end of the motion: "
-        )
-        sentence += (
-            "leave rest out, or let the load end earlier (when a brake stops the cylinder is in "
-            "switches of a Motion)"
+            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
+            "the motion: leave rest out, or let the load end earlier (when a brake stops the "
+            "cylinder is in switches of a Motion)"
         )
         raise ParameterError("rest", rest, "None", sentence)
 

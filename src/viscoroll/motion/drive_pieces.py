@@ -540,7 +540,7 @@ def piecewise(
     if isinstance(function, Schedule):
         check_array(f"values of {name}", function.values, low=low)
         return _follow_corners(*np.atleast_2d(function.times, function.values))
-    values = check_array(name, 0.0 if function is None else function, low=low)
+    values = check_array(name, function, low=low)
     if values.ndim > 1:
         allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
         raise shape_error(name, values.shape, allowed)

@@ -4,8 +4,6 @@ gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 
 from __future__ import annotations
 
-import math
-import sys
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,17 +62,6 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
         found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at rows {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
     return times
-
-
-def refuse_end(end: float, T: float) -> None:
-    """Raise ParameterError where the last output time becomes infinite when it is divided by T_ref.
-
-    end: last output time, finite, >= 0, in s, or of a scene in T_ref.
-    T: T_ref, the unit of time of the dimensionless motion, > 0, s; 1 for a scene.
-    Returns None for any other time.
-    """
-    if end / T == math.inf:
-        raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
 
 
 def require_single(**arguments: Any) -> None:
