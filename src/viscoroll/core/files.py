@@ -468,12 +468,18 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
     not have gives "".
     """
     for key in keys:
-        # of a union, as Section | None, the members too
-        sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
-        kind = next(
-            (get_type_hints(each)[key] for each in sections if key in get_type_hints(each)), None
-        )
+        hints = map(get_type_hints, _sections_in(kind))
+        kind = next((each[key] for each in hints if key in each), None)
     return ", ".join(repr(each) for each in get_args(kind) if isinstance(each, str))
+
+
+def _sections_in(kind: Any) -> list[Any]:
+    """Return those of a type, or of the members of a union as Section | None, that have keys."""
+    return [
+        each
+        for each in (kind, *get_args(kind))
+        if is_dataclass(each) or hasattr(each, "__struct_fields__")
+    ]
 
 
 def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
@@ -491,11 +497,7 @@ def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
     hints = get_type_hints(kind)
     check_keys(path, name, content, hints)
     for key, value in content.items():
-        kinds = hints[key], *get_args(hints[key])
-        subsections = [
-            each for each in kinds if is_dataclass(each) or hasattr(each, "__struct_fields__")
-        ]
-        if subsections and isinstance(value, dict):
+        if (subsections := _sections_in(hints[key])) and isinstance(value, dict):
             _check_all_keys(path, f"{name}.{key}", value, subsections[0])
 
 

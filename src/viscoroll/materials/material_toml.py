@@ -8,13 +8,12 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
-import msgspec
 import numpy as np
 
 from ..core import FileError, as_section_error, as_struct, check_number, read_toml, section_error
@@ -29,14 +28,16 @@ SECTIONS = ("material", "base")
 _NO_MATERIAL = "section [material] is missing: it needs E and nu"
 
 
-class PronySection(msgspec.Struct):
+@dataclass
+class PronySection:
     """Key prony = { E = [...], tau = [...] }: the parameters of :class:`Prony`."""
 
     E: list[float]
     tau: list[float]
 
 
-class CreepSection(msgspec.Struct):
+@dataclass
+class CreepSection:
     """Key creep = { J = [...], T = [...] }: the parameters of :meth:`Prony.creep`."""
 
     J: list[float]
@@ -44,7 +45,8 @@ class CreepSection(msgspec.Struct):
     alpha: float | None = None
 
 
-class FileSection(msgspec.Struct, kw_only=True):
+@dataclass(kw_only=True)
+class FileSection:
     """Section [material] or [base] that names a netCDF or TOML file.
 
     thickness, density : as in :class:`MaterialSection`; they replace those of the file.
@@ -61,7 +63,8 @@ class FileSection(msgspec.Struct, kw_only=True):
     temperature: float | None = None
 
 
-class MaterialSection(FileSection, kw_only=True):
+@dataclass(kw_only=True)
+class MaterialSection(FileSection):
     """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`,
     and a temperature.
 
@@ -224,9 +227,7 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
     """
     if not (isinstance(content, dict) and "file" in content):
         return as_struct(path, name, content, MaterialSection)
-    for key in content.keys() & set(MaterialSection.__struct_fields__) - set(
-        FileSection.__struct_fields__
-    ):
+    for key in content.keys() & MaterialSection.__annotations__.keys() - {"file"}:
         problem = (
             f"{key}: must be left out beside file; to change it, write the content of the "
             "file here in its place"
@@ -348,9 +349,8 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     reference = section.reference
     # None, not given, stays; so does 0 degrees Celsius, which needs no check
     more["temperature"] = reference and check_number("reference", reference, above=ABSOLUTE_ZERO)
-    series = parse_series(
-        path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep})
-    )
+    forms = {"prony": section.prony, "creep": section.creep}
+    series = parse_series(path, name, {key: vars(form) for key, form in forms.items() if form})
     times = section.T_epsilon, section.T_sigma
     if times != (None, None):
         if None in times or section.T_ref is not None or series:
@@ -378,7 +378,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     Raises FileError for both keys, values out of range, and lists of different lengths; TypeError
     for another key in such a dict, ValueError for arrays of different lengths in a list.
     """
-    forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
+    forms = {key: given[key] for key in ("prony", "creep") if key in given}
     if len(forms) > 1:
         raise section_error(
             path, name, "creep", "prony and creep are both given: give one of the two"

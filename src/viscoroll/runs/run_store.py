@@ -35,7 +35,7 @@ from ..motion import (
     summary_dataset,
 )
 from ..motion.ensemble import ensemble
-from ..roller_toml import CylinderSection
+from ..presets import CylinderSection
 from ..rollers import UNITS
 from ..sampling import points
 from . import run_records
@@ -281,7 +281,7 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     letter, _, index = name.partition("_")
     if letter in _SERIES and index.isdecimal():
         return {"long_name": _SERIES[letter].format(index), "units": "1"}
-    if name in CylinderSection.__struct_fields__ and name not in SYMBOLS:
+    if name in CylinderSection.__annotations__ and name not in SYMBOLS:
         return {"long_name": f"{name} of the cylinder", "units": UNITS.get(name, "1")}
     about = column_attributes(name, si)
     return {
