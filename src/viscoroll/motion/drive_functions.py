@@ -99,31 +99,22 @@ class DriveFunctions:
     end: float
 
     @cached_property
-    def _function_motions(self) -> int:
-        """Number of motions that have functions or slopes of their own; 1 if all are alike.
+    def counts(self) -> tuple[int, int]:
+        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
+        all are alike.
 
-        By it :meth:`block` and :meth:`for_kernel` decide whether all motions share their pieces;
-        :attr:`counts` has the number of the gains too.
+        By the first :meth:`block` and :meth:`for_kernel` decide whether all motions share their
+        pieces.
         Raises ParameterError if two of the functions, or a function and the slope, have values for
-        different numbers of motions, both other than 1.
+        different numbers of motions, both other than 1.  Whether the two numbers agree is not
+        checked here.
         """
         counts = {name: len(f.terms) for name, f in self.functions.items()}
         counts["slope"] = self.tangent.size
         shape = broadcast_shape(
             **{name: np.empty(count) for name, count in counts.items() if count != 1}
         )
-        return shape[0] if shape else 1
-
-    @cached_property
-    def counts(self) -> tuple[int, int]:
-        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
-        all are alike.
-
-        Raises ParameterError if two of the functions, or a function and the slope, have values for
-        different numbers of motions, both other than 1.  Whether the two numbers agree is not
-        checked here.
-        """
-        return self._function_motions, self.gains.shape[1]
+        return shape[0] if shape else 1, self.gains.shape[1]
 
     @cached_property
     def corners(self) -> int:
@@ -148,10 +139,11 @@ class DriveFunctions:
         Returns an int in 1 ... ``most``.
         Raises ParameterError as :attr:`counts` does.
         """
-        if self._function_motions == 1:
+        if self.counts[0] == 1:
             return most
         # start and scale, then the terms of five functions (:attr:`pieces`), 8 bytes each
-        columns = 2 + 5 * max(f.terms.shape[-1] for f in self.functions.values())
+        terms = max((f.terms.shape[-1] for f in self.functions.values()), default=1)
+        columns = 2 + 5 * terms
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def _blocks(self, count: int) -> list[slice]:
@@ -217,13 +209,9 @@ class DriveFunctions:
         PRESCRIBED_V).
         Raises ParameterError where a prescribed speed jumps.
         """
-        pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
+        pieces = self.pieces if self.counts[0] == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
-        return (
-            np.ascontiguousarray(pieces),
-            np.ascontiguousarray(gains),
-            _PRESCRIBED_CODES[self.prescribed],
-        )
+        return pieces, np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
     def _take(self, index: Any) -> DriveFunctions:
         """Return the :class:`DriveFunctions` of some motions; their gains stay those of all
@@ -252,8 +240,7 @@ class DriveFunctions:
             return True
         # the coefficients of the last piece, without its start and scale
         return any(
-            self.for_kernel(part)[0][:, -1, 2:].any()
-            for part in self._blocks(self._function_motions)
+            self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self.counts[0])
         )
 
 
@@ -299,7 +286,7 @@ def prepare_drive(
         name: piecewise(
             name, given, end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
         )
-        for name, given in drive.given.items()
+        for name, given in drive.values.items()
         if name not in ("slope", "drag")
     }
     checked_drive = DriveFunctions(
@@ -307,8 +294,9 @@ def prepare_drive(
     )
     starts = {"V": V0, "omega": omega0}
     if prescribed:
-        start = starts[prescribed], checked_drive, getattr(drive, prescribed)
-        starts[prescribed] = _prescribed_start(prescribed, *start)
+        starts[prescribed] = _prescribed_start(
+            prescribed, starts[prescribed], checked_drive, drive.values[prescribed]
+        )
     for name, start in starts.items():
         if start is None:
             raise ParameterError(

@@ -145,8 +145,7 @@ def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     Returns the path in :func:`folder`; its name is a digest of the parameters and the octave.
     """
     numbers = np.array((*_numbers(parameters), octave), np.float64)
-    # the prefix tells names of files with a seal from those of earlier versions, which had none
-    return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
+    return folder() / (hashlib.sha256(numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
@@ -302,44 +301,40 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
         errors=(math.inf,) * 3,
         problem="",
     )
-    problem = fill_tables(new_map, threads)
-    if problem:
-        return replace(new_map, problem=problem)
+    try:
+        fill_tables(new_map, threads)
+    except NoFlowMap as reason:
+        return replace(new_map, problem=str(reason))
     return replace(new_map, errors=_measure_errors(new_map, octave, threads))
 
 
-def fill_tables(new_map: Any, threads: int | None) -> str:
+def fill_tables(new_map: FlowMap, threads: int | None) -> None:
     """Fill the tables of a new flow map.
 
     new_map : the :class:`.flow.FlowMap`, whose ``table`` is written.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
     available.
-    Returns "", or the reason why the scene has no map, a sentence; the table is then incomplete.
-    Of an elastic scene, which never slows down, nothing is written.
+    Raises NoFlowMap with the reason why the scene has no map, a sentence; the table is then
+    incomplete.  Of an elastic scene, which never slows down, nothing is written.
     """
     if new_map.slow_rate == 0.0:
-        return "an elastic cylinder never slows down"
+        raise NoFlowMap("an elastic cylinder never slows down")
     parts = flow_layout.views(new_map.table)
-    first = new_map.first
     problem = FlowProblem(
         new_map.parameters, law_table(new_map.parameters[0]).record, new_map.slow_rate, threads
     )
-    try:
-        with np.errstate(all="ignore"):  # what is not finite is refused
-            _fill_full_slip(problem, parts)
-            slow = fill_manifold(problem, parts)
-            for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
-                fill_layers(
-                    problem,
-                    sign,
-                    first=first,
-                    slow=slow,
-                    asymptote=parts.asymptote[family],
-                    layer=parts.layer[family],
-                )
-    except NoFlowMap as reason:
-        return str(reason)
-    return ""
+    with np.errstate(all="ignore"):  # what is not finite is refused
+        _fill_full_slip(problem, parts)
+        slow = fill_manifold(problem, parts)
+        for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
+            fill_layers(
+                problem,
+                sign,
+                first=new_map.first,
+                slow=slow,
+                asymptote=parts.asymptote[family],
+                layer=parts.layer[family],
+            )
 
 
 def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:

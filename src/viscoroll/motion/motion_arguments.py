@@ -219,25 +219,24 @@ class Drive(NamedTuple):
         return {name: value for name, value in self._asdict().items() if value is not None}
 
     @property
-    def numbers(self) -> dict[str, Floats]:
-        """Return name -> array, () or (n,), of each load or speed that is given as a number or as
-        one for each motion.
-
-        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the
-        drag are among them.  Schedules, callables and feedbacks are left out.  Raises
-        ParameterError for what is not numeric or not finite.
-        """
-        others = Feedback | Schedule
-        return {
-            n: check_array(n, x)
-            for n, x in self.given.items()
-            if not (callable(x) or isinstance(x, others))
-        }
+    def values(self) -> dict[str, Any]:
+        """What is given, as :attr:`given`, without gains: of a feedback its value."""
+        return {n: x.value if isinstance(x, Feedback) else x for n, x in self.given.items()}
 
     @property
-    def has_callable(self) -> bool:
-        """Whether one of them is a function of t, by itself or in a feedback."""
-        return any(callable(x.value if isinstance(x, Feedback) else x) for x in self.given.values())
+    def numbers(self) -> dict[str, Floats]:
+        """Return name -> array, () or (n,), of each load or speed that is given as a number or as
+        one for each motion, also in a feedback.
+
+        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the
+        drag are among them.  Schedules and callables are left out.  Raises ParameterError for what
+        is not numeric or not finite.
+        """
+        return {
+            n: check_array(n, x)
+            for n, x in self.values.items()
+            if not (callable(x) or isinstance(x, Schedule))
+        }
 
     @property
     def acts(self) -> bool:

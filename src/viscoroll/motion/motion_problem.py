@@ -189,10 +189,9 @@ def make_problem(
         V0, omega0, immobile = _apply_standstill(prepared, scene, rested, scale)
     except ParameterError as error:
         raise with_scales(error, scale) from error
-    many = max(functions.counts)
-    if single and many > 1:
-        allowed = "the drive of one motion: for many use ensemble"
-        raise described_error("drive", f"has values for {many} motions", allowed)
+    if single and functions.counts != (1, 1):
+        found = f"has values for {max(functions.counts)} motions"
+        raise described_error("drive", found, "the drive of one motion: for many use ensemble")
     return MotionProblem(
         roller=roller,
         scene=scene,
@@ -213,13 +212,13 @@ def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
 
     resolve: the argument of the caller, not None: one number, in T_ref of a scene, in s or with a
     unit of time of a cylinder.
-    drive: :class:`Drive` of the motions, of which only :attr:`Drive.has_callable` is read.
+    drive: :class:`Drive` of the motions, of which :attr:`Drive.values` is read.
     scale: :class:`Scale` of the roller, which converts s to T_ref.
     Returns a float > 0.
     Raises ParameterError unless ``resolve`` is one finite number above 0 without a unit of another
     dimension, and the drive has a callable.
     """
-    if not drive.has_callable:
+    if not any(map(callable, drive.values.values())):
         sentence = (
             f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
             "leave it out"
