@@ -129,10 +129,10 @@ class Material(FromPrograms):
             _refuse_no_shift(
                 "shift", self.shift, "a WLF, an Arrhenius or a function of the temperature"
             )
-        is_text = isinstance(self.vertical_shift, str)
-        if self.vertical_shift is not None and not (is_text and self.vertical_shift == "entropic"):
+        vertical = self.vertical_shift
+        if not (isinstance(vertical, str | None) and vertical in (None, "entropic")):
             _refuse_no_shift(
-                "vertical_shift", self.vertical_shift, "'entropic' or a function of the temperature"
+                "vertical_shift", vertical, "'entropic' or a function of the temperature"
             )
 
     @classmethod
