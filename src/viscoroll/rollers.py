@@ -308,22 +308,23 @@ class Cylinder(Methods):
         acts on pressure.
         Raises ParameterError as the class says.
         """
-        values: dict[str, Any] = {
-            "R": R,
-            "m": m,
-            "E": E,
-            "nu": nu,
-            "T_epsilon": T_epsilon,
-            "T_sigma": T_sigma,
-            "mu": mu,
-            "j": j,
-            "g": g,
-            "plane": plane,
-            "material": material,
-            "base": base,
-            "pressed": pressed if load is None else load,
-            "coupled": coupled if coupled is None else check_bool("coupled", coupled),
-        }
+        values = vars(self)  # by it, as the class is frozen
+        values.update(
+            R=R,
+            m=m,
+            E=E,
+            nu=nu,
+            T_epsilon=T_epsilon,
+            T_sigma=T_sigma,
+            mu=mu,
+            j=j,
+            g=g,
+            plane=plane,
+            material=material,
+            base=base,
+            pressed=pressed if load is None else load,
+            coupled=coupled if coupled is None else check_bool("coupled", coupled),
+        )
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
@@ -343,14 +344,10 @@ class Cylinder(Methods):
             )
         broadcast_shape(**{name: values[name] for name in numbers})
         check_choice("plane", plane, "strain", "stress")
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
         if material is None:
-            if np.ndim(values["T_epsilon"]) > 1:
-                raise shape_error(
-                    "T_epsilon", values["T_epsilon"].shape, "a number or a vector (n,)"
-                )
-            refuse_short_retardation(values["T_epsilon"], values["T_sigma"])
+            if np.ndim(self.T_epsilon) > 1:
+                raise shape_error("T_epsilon", self.T_epsilon.shape, "a number or a vector (n,)")
+            refuse_short_retardation(self.T_epsilon, self.T_sigma)
         if material is not None or base is not None:
             self._refuse_thick_layer(
                 self.pair.cylinder.thickness

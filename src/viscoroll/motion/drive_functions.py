@@ -49,14 +49,6 @@ _BESIDE = (
     ("brake", "omega", "omega is prescribed"),
     ("drag", "omega", "omega is prescribed"),
 )
-#: Names of the gains in the order of the kernel's.
-_GAINS = (
-    "gain of force on V",
-    "gain of force on omega",
-    "gain of torque on V",
-    "gain of torque on omega",
-)
-
 #: The function of time that is 0.
 _NOTHING = Piecewise(np.zeros((1, 1)), np.zeros((1, 1, 1)))
 #: Code in the kernels of the prescribed speed, by its name; "" for none.
@@ -209,25 +201,13 @@ class DriveFunctions:
         PRESCRIBED_V).
         Raises ParameterError where a prescribed speed jumps.
         """
-        pieces = self.pieces if self.counts[0] == 1 else self._take(index).pieces
+        some = self
+        if self.counts[0] > 1:
+            functions = {name: f.take(index) for name, f in self.functions.items()}
+            tangent = self.tangent[index] if self.tangent.size > 1 else self.tangent
+            some = replace(self, functions=functions, tangent=tangent)
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
-        return pieces, np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
-
-    def _take(self, index: Any) -> DriveFunctions:
-        """Return the :class:`DriveFunctions` of some motions; their gains stay those of all
-        motions.
-
-        index: index of numpy, a slice or a vector of integers, that selects the motions; what is
-        the same for all motions stays.
-        Returns a new object; its functions and tangent are those of the selected motions, in the
-        order of ``index``.
-        """
-        functions = {name: f.take(index) for name, f in self.functions.items()}
-        return replace(
-            self,
-            functions=functions,
-            tangent=self.tangent[index] if self.tangent.size > 1 else self.tangent,
-        )
+        return some.pieces, np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
     @property
     def acts_at_end(self) -> bool:
@@ -369,14 +349,17 @@ def _gains(drive: Drive) -> Floats:
     Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where
     nothing is given.
     """
-    pairs = [
-        (x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0)
-        for x in (drive.force, drive.torque)
-    ]
-    rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
-    rows[3] = rows[3] - check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
-    count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
-    return np.array([np.broadcast_to(row, count) for row in rows])
+    gains = {
+        f"gain of {name} on {speed}": np.atleast_1d(
+            getattr(load, speed) if isinstance(load, Feedback) else 0.0
+        )
+        for name, load in (("force", drive.force), ("torque", drive.torque))
+        for speed in ("V", "omega")
+    }
+    drag = check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
+    gains["gain of torque on omega"] = gains["gain of torque on omega"] - drag
+    count = broadcast_shape(**gains)
+    return np.array([np.broadcast_to(gain, count) for gain in gains.values()])
 
 
 def refuse_rest(rest: Any, functions: DriveFunctions) -> None:
@@ -424,14 +407,10 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
         allowed = "continuous, as it is a prescribed speed"
         raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", allowed))
-    order = np.arange(1, speed.terms.shape[-1])
     dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
-    terms = speed.terms[..., 1:] * order * dx_dt[..., None]
-    return speed._replace(
-        terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE)
-        if order.size
-        else np.zeros_like(speed.terms)
-    )
+    terms = np.zeros_like(speed.terms)
+    terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1]) * dx_dt[..., None]
+    return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 
 
 def values_at_start(terms: Floats) -> Floats:

@@ -362,8 +362,7 @@ def integrate_single(
             np.nan,
             np.nan,
         ]
-    law = scene.rolling_law
-    assert law is not None
+    law: Any = scene.rolling_law
     numbers = scene.kappa, scene.mu, scene.gamma, scene.j, problem.V0, problem.omega0
     arrays = np.array(numbers, float).reshape(-1, 1)
     arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
