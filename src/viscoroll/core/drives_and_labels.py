@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
+from .arrays import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
 from .errors import ParameterError, described_error, shape_error
 from .quantities import convert, has_no_unit, split_unit, to_unit
 from .scale import HasUnits, Scale

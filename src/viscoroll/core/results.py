@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import NDArray
+from .arrays import NDArray
 from .drives_and_labels import Labels, dataset_axes, state_axes
 from .files import DataFrame, Dataset, Figure
 from .scale import attributes

@@ -178,7 +178,7 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
     :func:`runs.roll_inputs`).
     Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a
     material does not allow, CancelledError if the run was interrupted
-    (:func:`.blocks.cancel_with`).
+    (:func:`.arrays.cancel_with`).
     """
     start, stop = run.edges(block)
     values = block_inputs(run, block)
@@ -495,7 +495,7 @@ def block_content(run: Run, block: int) -> BlockContent:
     Returns the :class:`BlockContent`, whose ``files`` are {} if ``settings.keep`` is "summaries".
     Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a
     material does not allow, CancelledError if the run was interrupted
-    (:func:`.blocks.cancel_with`), MissingDependencyError if motions are kept and zarr is not
+    (:func:`.arrays.cancel_with`), MissingDependencyError if motions are kept and zarr is not
     installed.
     """
     values, motions = roll_block(run, block)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import NDArray
+from ..arrays import NDArray
 from ..errors import FileError, ParameterError
 from ..files import DataArray, Dataset, Figure, as_path, replace_file
 from ..scale import MEASURED, SYMBOLS

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import NDArray
+from ..arrays import NDArray
 from ..errors import ParameterError
 from ..files import Dataset, Figure
 from . import (
