@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
 from .core import (
     FileError,
+    FilePath,
     ParameterError,
     as_section_error,
     as_struct,
@@ -147,7 +147,7 @@ def preset(name: str) -> Scene:
     return PRESETS[name]
 
 
-def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene | Cylinder:
+def read_roller(path: FilePath, more: tuple[str, ...] = ()) -> Scene | Cylinder:
     """Read the roller of a TOML file.
 
     Parameters
@@ -236,10 +236,8 @@ def make_roller(
     if (series := parse_series(path, "scene", given)) is not None:
         given["material"] = series
         # by the name of the key in the file, which the error states
-        check_one_given(
-            alpha=given.get("alpha"), **{"creep" if "creep" in given else "prony": series}
-        )
-    given = {name: value for name, value in given.items() if name not in ("prony", "creep")}
+        form = "creep" if "creep" in given else "prony"
+        check_one_given(alpha=given.get("alpha"), **{form: given.pop(form)})
     if "preset" in content:
         return preset(content["preset"]).replace(**given)
     # they are optional in the section, since a preset has them
@@ -271,7 +269,7 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
     )
 
 
-def read_sections(path: str | PathLike[str]) -> dict[str, Any]:
+def read_sections(path: FilePath) -> dict[str, Any]:
     """Return name of a section -> content of a file of bodies, unchecked, or of the name of a
     preset.
 
@@ -284,7 +282,7 @@ def read_sections(path: str | PathLike[str]) -> dict[str, Any]:
     return {} if Path(path).suffix.lower() == SUFFIX else read_toml(path)
 
 
-def read_law_source(path: str | PathLike[str]) -> Any:
+def read_law_source(path: FilePath) -> Any:
     """Read the bodies of a file, for which a law can be tabulated by
     :func:`viscoroll.tables.law`.
 

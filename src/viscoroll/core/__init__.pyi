@@ -58,6 +58,7 @@ from .files import DataArray as DataArray
 from .files import DataFrame as DataFrame
 from .files import Dataset as Dataset
 from .files import Figure as Figure
+from .files import FilePath as FilePath
 from .files import as_file_error as as_file_error
 from .files import as_path as as_path
 from .files import as_section_error as as_section_error

@@ -403,12 +403,8 @@ def _title_unit(title: Any) -> str | None:
     found = _TITLE_UNIT.search(title) if isinstance(title, str) else None
     if found is None or found[1].strip() in _DIMENSIONLESS:
         return None
-    try:
-        # to itself, since any dimension is allowed: text in brackets may be no unit, as "V [fast]"
-        conversion_factor(found[1], found[1])
-    except ParameterError:
-        return None
-    return found[1]
+    # text in brackets may be no unit, as "V [fast]"
+    return found[1] if is_unit(found[1]) else None
 
 
 def _to_seconds(name: str, value: Any) -> Any:

@@ -7,14 +7,13 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .arrays import NDArray
 from .drives_and_labels import Labels, dataset_axes, state_axes
-from .files import DataFrame, Dataset, Figure
+from .files import DataFrame, Dataset, Figure, FilePath
 from .scale import attributes
 
 #: Rows of a summary in a notebook: more do not fit a screen.
@@ -85,7 +84,7 @@ class Result:
         names = {name: column_name(str(name), unit_of(data[name].attrs)) for name in data.variables}
         return data.to_dataframe().rename(columns=names).rename_axis(index=names)
 
-    def plot(self: Any, path: str | PathLike[str] | None = None) -> Figure:
+    def plot(self: Any, path: FilePath | None = None) -> Figure:
         """Draw the result, and save the figure if a path is given.
 
         Parameters

@@ -19,14 +19,13 @@ import tomllib
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from importlib.resources import files
-from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from .. import __version__
-from ..core import PAPER, Dataset, FileError, ParameterError, read_sealed, seal_matches
+from ..core import PAPER, Dataset, FileError, FilePath, ParameterError, read_sealed, seal_matches
 from .measured_data import Measured, shifts_as_toml, shifts_of_toml
 from .prony import Prony
 
@@ -179,7 +178,7 @@ def stated_errors(dataset: Any) -> dict[str, float]:
     return {name: float(dataset[name].attrs[kind.error]) for name in kind.functions}
 
 
-def is_law(path: str | PathLike[str]) -> bool:
+def is_law(path: FilePath) -> bool:
     """Return whether a file is the law of a material, a pair or a cover, by its attribute
     ``viscoroll_table``.
 
@@ -198,7 +197,7 @@ def is_law(path: str | PathLike[str]) -> bool:
     return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 
 
-def read_law(path: str | PathLike[str]) -> Content:
+def read_law(path: FilePath) -> Content:
     """Return the content of a law file, verified by its seal, schema and checksum.
 
     path: path of the file; a file without a seal is verified by its schema and checksum alone.
@@ -225,7 +224,7 @@ def read_law(path: str | PathLike[str]) -> Content:
     return content
 
 
-def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Content:
+def read_content(path: FilePath, expected: str, remedy: str) -> Content:
     """Read a netCDF file by h5py alone, which takes a tenth of the time of xarray.
 
     path: path of the file.
@@ -369,7 +368,7 @@ def material_as_dataset(material: Any) -> Dataset:
     )
 
 
-def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
+def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
     """Read a file of :meth:`viscoroll.Material.to_netcdf`.
 
     path: path of the file.

@@ -10,13 +10,20 @@ import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from ..core import FileError, as_section_error, as_struct, check_number, read_toml, section_error
+from ..core import (
+    FileError,
+    FilePath,
+    as_section_error,
+    as_struct,
+    check_number,
+    read_toml,
+    section_error,
+)
 from .checked_netcdf import SUFFIX, is_law, read_law
 from .material import Material
 from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift, shifts_as_toml
@@ -95,7 +102,7 @@ class MaterialSection(FileSection):
     nu_instant: float | None = None
 
 
-def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
+def read_materials(path: FilePath) -> dict[str, Material]:
     """Read the materials of a file.
 
     Parameters

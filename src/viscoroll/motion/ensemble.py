@@ -250,9 +250,8 @@ class Ensemble(RollResult):
                     start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values))
                 )
         index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
-        sense = (
-            self.V0 * self.omega0 + 0.0
-        )  # +0 from rest: friction moves the axis in the sense of the rotation
+        # +0 from rest: friction moves the axis in the sense of the rotation
+        sense = self.V0 * self.omega0 + 0.0
         return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
@@ -540,17 +539,10 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
         "omega0": batch.inputs["omega0"],
     }
     if scale.si:
-        for name, row in rows.items():
+        for name in rows:
             # a unit for each motion is a column; in place, as the rows may fill the memory
-            np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
+            rows[name] *= np.reshape(scale[name], (-1, 1))
         times = {name: value * scale[name] for name, value in times.items()}
     times = {name: np.broadcast_to(value, shape) for name, value in times.items()}
-    return (
-        rows
-        | times
-        | {
-            "status": found.status,
-            "switches": found.switches,
-            "drive_error": batch.problem.functions.error,
-        }
-    )
+    notes = {"status": found.status, "switches": found.switches}
+    return rows | times | notes | {"drive_error": batch.problem.functions.error}

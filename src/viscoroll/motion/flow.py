@@ -169,13 +169,10 @@ def _read(data: Any, parameters: tuple[Any, ...]) -> FlowMap:
 
     data: arrays by name.
     parameters: (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
-    Raises ValueError for one of another scene or with a table of another size, and KeyError for one
-    that lacks an array.
+    Raises ValueError for one of another scene, and KeyError for one that lacks an array.
     """
     if not np.array_equal(data["parameters"], _numbers(parameters)):
         raise ValueError("it belongs to another scene")
-    if data["table"].shape != (flow_layout.SIZE,):
-        raise ValueError("the size of its table is wrong")
     return FlowMap(
         parameters=parameters,
         first=int(data["first"]),
@@ -236,9 +233,8 @@ def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
     """
     parameters = (scene.in_own_time()[0], scene.kappa, scene.mu, scene.j)
     octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVE_STEP) * _OCTAVE_STEP
-    return parameters, min(
-        max(octave, flow_layout.OCTAVE_RANGE[0]), flow_layout.OCTAVE_RANGE[1]
-    )  # motions beyond find nothing there
+    # motions beyond these find nothing there
+    return parameters, int(np.clip(octave, *flow_layout.OCTAVE_RANGE))
 
 
 def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:

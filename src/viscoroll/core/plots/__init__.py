@@ -8,7 +8,6 @@ of contact states, stresses, equilibria, tables and motions.  Other figures are 
 from __future__ import annotations
 
 import re
-from os import PathLike
 from textwrap import fill
 from typing import Any
 
@@ -16,7 +15,7 @@ import numpy as np
 
 from ..arrays import NDArray
 from ..errors import FileError, ParameterError
-from ..files import DataArray, Dataset, Figure, as_path, replace_file
+from ..files import DataArray, Dataset, Figure, FilePath, as_path, replace_file
 from ..scale import MEASURED, SYMBOLS
 
 # --- Common parts of all figures ---
@@ -232,7 +231,7 @@ def with_unit(text: str, units: str, separator: str = " ") -> str:
     return text if units == "1" else text + separator + re.sub(r"(-\d)", r"$^{\1}$", units)
 
 
-def save(figure: Figure, path: str | PathLike[str]) -> None:
+def save(figure: Figure, path: FilePath) -> None:
     """Write a figure, whole or not at all.
 
     Parameters
