@@ -256,19 +256,16 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
     without a shift, and a file that the section names and that is wrong.
     """
     section = _parse_section(path, name, content)
+    given = {key: value for key, value in vars(section).items() if value is not None}
+    temperature = given.pop("temperature", None)
     with as_section_error(path, name):
+        if shift := _shift_of(path, name, section):
+            given["shift"] = given.pop(type(shift).__name__.lower())
         if section.file is None:
-            material = _make_material(path, name, section)
+            material = _make_material(path, name, given)
         else:
-            material = _read_other_file(path, name, Path(path).parent / section.file)
-            values = {"thickness": section.thickness, "density": section.density}
-            material = replace(
-                material, **{key: value for key, value in values.items() if value is not None}
-            )
-        shift = _shift_of(path, name, section)
-        temperature = section.temperature
-        vertical = section.vertical_shift or material.vertical_shift
-        material = replace(material, shift=shift or material.shift, vertical_shift=vertical)
+            other = _read_other_file(path, name, Path(path).parent / given.pop("file"))
+            material = replace(other, **given)
         if temperature is None:
             return material
         if material.shift is None:
@@ -331,12 +328,13 @@ def _material_of_law(path: Path) -> Material:
     return parse_materials(path, content)["material"]
 
 
-def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
+def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
     """Return the material of a section at its reference temperature, by its standard linear solid
     or its series.
 
     path, name: path of the file and name of the section, for errors.
-    section: checked content of the section, without the key file.
+    given: what the section states, by its keys, checked; ``shift`` in place of wlf and arrhenius.
+        It is changed.
     Returns the :class:`Material`, at the temperature ``reference``: with T_epsilon and T_sigma the
     standard linear solid, else with the series and T_ref (1 s if it is not given); elastic if the
     section has neither times nor a series.
@@ -344,31 +342,27 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     either beside T_ref or a series, both series, and a series that is wrong; ParameterError for
     another value out of range.
     """
-    nu = section.nu
-    if nu is None:
-        if not math.isinf(section.E):
+    if "nu" not in given:
+        if not math.isinf(given["E"]):
             raise section_error(path, name, "", "needs nu")
-        nu = Material.rigid().nu
-    more = {
-        key: getattr(section, key)
-        for key in ("name", "density", "thickness", "measured", "nu_instant")
+        given["nu"] = Material.rigid().nu
+    if "reference" in given:
+        reference = given.pop("reference")
+        given["temperature"] = check_number("reference", reference, above=ABSOLUTE_ZERO)
+    forms: dict[str, Any] = {
+        key: vars(given.pop(key)) for key in ("prony", "creep") if key in given
     }
-    reference = section.reference
-    # None, not given, stays; so does 0 degrees Celsius, which needs no check
-    more["temperature"] = reference and check_number("reference", reference, above=ABSOLUTE_ZERO)
-    forms = {"prony": section.prony, "creep": section.creep}
-    series = parse_series(path, name, {key: vars(form) for key, form in forms.items() if form})
-    times = section.T_epsilon, section.T_sigma
-    if times != (None, None):
-        if None in times or section.T_ref is not None or series:
+    if series := parse_series(path, name, forms):
+        given["prony"] = series
+    if times := given.keys() & {"T_epsilon", "T_sigma"}:
+        if len(times) == 1 or given.keys() & {"T_ref", "prony"}:
             problem = (
                 "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony "
                 "and creep"
             )
             raise section_error(path, name, "", problem)
-        return Material.sls(section.E, nu, *times, **more)  # type: ignore[arg-type]
-    T_ref = 1.0 if section.T_ref is None else section.T_ref
-    return Material(section.E, nu, series or Prony.elastic(), T_ref, **more)
+        return Material.sls(**given)
+    return Material(**given)
 
 
 def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
