@@ -62,7 +62,8 @@ class Kind(NamedTuple):
     functions : name of each function in the order of its coefficients -> meaning.
     dims : dimensions of the coefficients.
     terms : what the numbers of a function are, in words.
-    others : name of each other variable -> (dimensions, meaning).
+    others : name of each other variable -> (dimensions, attributes: long_name, and units unless it
+    is dimensionless or in T_ref).
     comment : how the numbers are evaluated.
     error : attribute of a function with its largest error.
     """
@@ -71,7 +72,7 @@ class Kind(NamedTuple):
     functions: dict[str, str]
     dims: list[str]
     terms: str
-    others: dict[str, tuple[list[str], str]]
+    others: dict[str, Any]
     comment: str
     error: str
 
@@ -142,14 +143,10 @@ def make_dataset(
     data = {}
     for n, (name, meaning) in enumerate(about.functions.items()):
         labels = {"long_name": f"{about.terms}: {meaning}", about.error: errors[name]}
-        data[name] = xr.Variable(about.dims, law.coefficients[..., n], labels)
-    for name, (dims, meaning) in about.others.items():
+        data[name] = about.dims, law.coefficients[..., n], labels
+    for name, (dims, labels) in about.others.items():
         value = np.asarray(getattr(law, name))
-        value = value.astype(np.int32) if value.dtype.kind == "i" else value
-        unit = (
-            {"units": "s"} if name == "T_ref" else {}
-        )  # the other variables are dimensionless or in T_ref
-        data[name] = xr.Variable(dims, value, {"long_name": meaning, **unit})
+        data[name] = dims, value.astype(np.int32) if value.dtype.kind == "i" else value, labels
     dataset = xr.Dataset(
         data,
         attrs={
@@ -302,7 +299,7 @@ SUFFIX = ".nc"
 _SCHEMA = "viscoroll material 1"
 #: variables of each form of the series
 _FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
-#: variable -> its meaning and unit
+#: variable -> its attributes long_name and units
 _MEANING = _TEXTS["material"]
 #: variables that a file may lack
 _OPTIONAL = ("density", "thickness", "temperature", "nu_instant")
@@ -344,7 +341,7 @@ def material_as_dataset(material: Any) -> Dataset:
         name: (
             ("rate" if name in _ERRORS else "mode",) * np.ndim(value),  # () of a number
             value,
-            dict(zip(("long_name", "units"), _MEANING[name], strict=True)),
+            _MEANING[name],
         )
         for name, value in held.items()
         if value is not None

@@ -400,13 +400,14 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
     divided by T_ref; of a series in creep form PREFIXcreep_strengths, divided by the long-time
     compliance, and PREFIXcreep_times.
     """
-    form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
+    form, total, strengths, times = (
+        ("creep", "compliance", series.J, series.T)
+        if series.by_creep
+        else ("relaxation", "modulus", series.E, series.tau)
+    )
     parts = {
-        "strengths": (
-            series.J if series.by_creep else series.E,
-            f"strengths of {form} divided by the long-time {total}",
-        ),
-        "times": (series.T if series.by_creep else series.tau, f"times of {form} divided by T_ref"),
+        "strengths": (strengths, f"strengths of {form} divided by the long-time {total}"),
+        "times": (times, f"times of {form} divided by T_ref"),
     }
     return {
         f"{prefix}{form}_{name}": (
