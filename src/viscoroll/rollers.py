@@ -22,6 +22,7 @@ from .core import (
     Result,
     Scale,
     SummaryRow,
+    attributes,
     broadcast_shape,
     check_array,
     check_bool,
@@ -32,6 +33,7 @@ from .core import (
     read_only,
     shape_error,
     slope_tan_cos,
+    unit_of,
 )
 from .laws import LawTable
 from .materials import (
@@ -179,16 +181,6 @@ _SAME_THICKNESS = 1e-9
 _SLS = ("E", "nu", "T_epsilon", "T_sigma")
 #: Names of the fields that are numbers.
 _NUMBERS = ("R", "m", *_SLS, "mu", "j", "g", "pressed")
-#: Units of the fields.
-UNITS = {
-    "R": "m",
-    "m": "kg m-1",
-    "E": "Pa",
-    "T_epsilon": "s",
-    "T_sigma": "s",
-    "g": "m s-2",
-    "load": "N m-1",
-}
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -504,7 +496,7 @@ class Cylinder(Methods):
         """
         values = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [
-            SummaryRow(name, format_value(value), UNITS.get(name, ""))
+            SummaryRow(name, format_value(value), unit_of(attributes(name, si=True)))
             for name, value in values.items()
         ]
         if self.material is not None:

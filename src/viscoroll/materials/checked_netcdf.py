@@ -150,10 +150,9 @@ def make_dataset(
     dataset = xr.Dataset(
         data,
         attrs={
-            "Conventions": "CF-1.11, ACDD-1.3",
+            **_TEXTS["file"],
             "title": f"Contact law of rolling with partial slip: {title}",
             "summary": about.summary,
-            "keywords": "rolling contact, viscoelasticity, rolling resistance",
             KIND: kind,
             SCHEMA: np.int32(VERSION),
             **attributes,
@@ -161,7 +160,6 @@ def make_dataset(
             "references": PAPER,
             "source": f"viscoroll {__version__}",
             "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}",
-            "license": "BSD-3-Clause",
         },
     )
     return dataset.assign_attrs({CHECKSUM: checksum(dataset_content(dataset).numbers, kind)})
@@ -349,15 +347,11 @@ def material_as_dataset(material: Any) -> Dataset:
     return xr.Dataset(
         data,
         attrs={
-            "Conventions": "CF-1.11",
+            **_TEXTS["material_file"],
             "schema": _SCHEMA,
             "title": material.name or "linear viscoelastic material",
             "name": material.name,
             "given": "creep" if series.by_creep else "relaxation",
-            "law": (
-                "E(t) = E_long (1 + sum E exp(-t/(tau T_ref))), J(t) = (1 - sum J exp(-t/(T "
-                "T_ref)))/E_long"
-            ),
             "source": f"viscoroll {__version__}",
             "measured": getattr(band, "source", ""),
             "shifts": "\n".join(f"{key} = {value}" for key, value in shifts.items()),

@@ -25,7 +25,16 @@ import numpy as np
 
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
-from ..core import SYMBOLS, FileError, Floats, NDArray, as_file_error, shape_error, write_bytes
+from ..core import (
+    SYMBOLS,
+    FileError,
+    Floats,
+    NDArray,
+    as_file_error,
+    shape_error,
+    si_unit,
+    write_bytes,
+)
 from ..motion import (
     Ensemble,
     Summary,
@@ -36,7 +45,6 @@ from ..motion import (
 )
 from ..motion.ensemble import ensemble
 from ..presets import CylinderSection
-from ..rollers import UNITS
 from ..sampling import points
 from . import run_records
 from .run_records import (
@@ -282,7 +290,7 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     if letter in _SERIES and index.isdecimal():
         return {"long_name": _SERIES[letter].format(index), "units": "1"}
     if name in CylinderSection.__annotations__ and name not in SYMBOLS:
-        return {"long_name": f"{name} of the cylinder", "units": UNITS.get(name, "1")}
+        return {"long_name": f"{name} of the cylinder", "units": si_unit(name)}
     about = column_attributes(name, si)
     return {
         key: value.tolist() if isinstance(value, np.ndarray) else value
