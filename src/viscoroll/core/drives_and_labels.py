@@ -497,7 +497,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
         return given, None
     given = {name: convert_argument(name, value, units) for name, value in given.items()}
     arrays, series = (
-        {name: value for name, value in given.items() if kind and isinstance(value, kind)}
+        {name: value for name, value in given.items() if isinstance(value, kind)}
         for kind in (_loaded_type("xarray", "DataArray"), _loaded_type("pandas", "Series"))
     )
     labelled = arrays | series
@@ -529,10 +529,10 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
 
 
 def _loaded_type(module: str, name: str) -> Any:
-    """Return the type ``name`` of a ``module`` if the program has imported that module, else
-    None.
+    """Return the type ``name`` of a ``module`` if the program has imported that module, else (), of
+    which nothing is an instance.
     """
-    return getattr(sys.modules.get(module), name, None)
+    return getattr(sys.modules.get(module), name, ())
 
 
 def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:

@@ -261,9 +261,12 @@ class Drive(NamedTuple):
         is.
         Raises ParameterError for a load that is no number and no function of time, or not finite.
         """
-        loads = {name: value for name, value in self.given.items() if name not in ("omega", "V")}
         return self._replace(
-            **{name: None for name, value in loads.items() if _is_zero(name, value)}
+            **{
+                name: None
+                for name, value in self.given.items()
+                if name not in ("omega", "V") and _is_zero(name, value)
+            }
         )
 
     def over(self, scale: Scale) -> Drive:
@@ -301,22 +304,9 @@ def _is_zero(name: str, value: Any) -> bool:
     )
 
 
-class PlainArguments(NamedTuple):
-    """Start speeds and drive as plain numbers, without the units and labels that they carried, and
-    these labels.
-
-    start : V0 and omega0 in the units of the roller.
-    drive : loads and prescribed speeds in the units of the roller.
-    labels : labels of arrays of xarray and pandas, by which results are labelled again; None
-    without.
-    """
-
-    start: tuple[Any, Any]
-    drive: Drive
-    labels: Labels | None
-
-
-def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainArguments:
+def strip_units(
+    start: tuple[Any, Any], drive: Drive, units: HasUnits
+) -> tuple[tuple[Any, Any], Drive, Labels | None]:
     """Return start speeds and drive in the units of a roller, as plain numbers, and the labels that
     they had.
 
@@ -326,8 +316,9 @@ def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainA
     Raises ParameterError for a unit of another dimension, for arrays with labels beside arrays
     without, or with other labels, and, where any argument has a unit or labels, for a Feedback that
     is neither force nor torque.
-    Returns :class:`PlainArguments`; what had neither a unit nor labels is unchanged, and callables
-    are.  Numbers are not checked otherwise.
+    Returns (V0 and omega0; loads and prescribed speeds; labels of arrays of xarray and pandas, by
+    which results are labelled again, None without), in the units of the roller.  What had neither a
+    unit nor labels is unchanged, and callables are.  Numbers are not checked otherwise.
     """
     plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
-    return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)
+    return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels

@@ -441,10 +441,9 @@ def _variables(
     about = QUANTITIES[name].about(si)
     times = ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))
-    moments = np.array(
+    counted, mean, spread, low, high = np.array(
         [[one.count, one.mean, one.spread, one.low, one.high] for one in histograms]
     ).T
-    counted, mean, spread, low, high = moments
     below, above = edges_of(bins)
     in_bins = f"{name}_bin"
     parts = {
