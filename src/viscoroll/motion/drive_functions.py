@@ -407,10 +407,17 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
         allowed = "continuous, as it is a prescribed speed"
         raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", allowed))
-    dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
     terms = np.zeros_like(speed.terms)
-    terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1]) * dx_dt[..., None]
+    terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1])
+    terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
+
+
+def _dx_dt(lengths: Floats) -> Floats:
+    """Return 2 divided by the lengths of pieces, the rate at which x runs from -1 to 1; 0 for those
+    that count as without length.
+    """
+    return np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > _INSTANT)
 
 
 def values_at_start(terms: Floats) -> Floats:
@@ -462,11 +469,8 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     count = max(len(f.terms) for f in functions)
     terms = max(f.terms.shape[-1] for f in functions)
     packed = np.zeros((count, kept, COL_COEFFICIENTS + len(functions) * terms))
-    lengths = ends - starts
     packed[..., COL_START] = starts
-    packed[..., COL_SCALE] = np.divide(
-        2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT
-    )
+    packed[..., COL_SCALE] = _dx_dt(ends - starts)
     for n, function in enumerate(functions):
         part = _restrict(function, rows, starts, ends)
         packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part

@@ -214,15 +214,16 @@ class _Sampled:
         self.largest = max(self.largest, largest)
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
+        piece = Piece(
+            start=start,
+            stop=stop,
+            terms=np.zeros(TERMS),
+            largest=0.0,
+            error=largest,
+            so_far=so_far,
+        )
         if largest <= zero:
-            return Piece(
-                start=start,
-                stop=stop,
-                terms=np.zeros(TERMS),
-                largest=0.0,
-                error=largest,
-                so_far=so_far,
-            ), None
+            return piece, None
         # still 0 at the start and at the point _RISE after it: cut where it rises
         if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
             n = int(np.argmax(np.abs(values) > zero))
@@ -240,14 +241,7 @@ class _Sampled:
         # half is 0 where the motion has no duration: all points are then x = 0
         error = np.abs(polyval((t - middle) / (half or 1.0), terms) - values)
         if (error <= allowed).all():
-            return Piece(
-                start=start,
-                stop=stop,
-                terms=terms,
-                largest=largest,
-                error=float(error.max()),
-                so_far=so_far,
-            ), None
+            return piece._replace(terms=terms, largest=largest, error=float(error.max())), None
         return None, self._locate_jump(t, values, float(allowed[-1]))
 
     def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:

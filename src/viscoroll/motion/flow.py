@@ -349,7 +349,7 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     V = SPEEDS.x / kappa
     # below the lowest speed V' is +-mu: T and X from rest to there are V/mu and V^2/(2 mu)
     least = 2.0**flow_layout.LOW / kappa
-    state = problem.contact_states(V, np.zeros(V.shape))
+    state = problem.contact_states(V)
     # |omega - V| at the onset of partial slip
     limit = state[DELTA_STAR] * V
     for n, sign in enumerate((1.0, -1.0)):

@@ -84,7 +84,7 @@ def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[
 
 def plot_measured_range(
     axes: Any, x: NDArray, y: NDArray, band: tuple[float, float] | None, **line: Any
-) -> list[Any]:
+) -> Any:
     """Plot a curve, solid where |x| lies in a measured band and dashed outside.
 
     axes: axes of matplotlib, drawn into.
@@ -93,22 +93,20 @@ def plot_measured_range(
     ``line`` everywhere.
     line: keyword arguments of ``Axes.plot``, the style of the line, of which with a band linestyle
     has no effect.
-    Returns the lines of matplotlib: one without a band; else the solid and the dashed one, of which
-    only the first has the label, and either may be without points.
+    Returns the line of matplotlib that has the label, with a band the solid one; it, and the dashed
+    one, may be without points.
     """
     if band is None:
-        return list(axes.plot(x, y, **line))
+        return axes.plot(x, y, **line)[0]
     outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
     solid = np.where(outside, np.nan, y)
     # The dashed curve begins at the last measured point: neighbours of points outside belong to it.
     dashed = outside.copy()
     dashed[1:] |= outside[:-1]
     dashed[:-1] |= outside[1:]
-    drawn = axes.plot(x, solid, **line | {"linestyle": "-"})
-    return [
-        *drawn,
-        *axes.plot(x, np.where(dashed, y, np.nan), **line | {"linestyle": "--", "label": None}),
-    ]
+    (drawn,) = axes.plot(x, solid, **line | {"linestyle": "-"})
+    axes.plot(x, np.where(dashed, y, np.nan), **line | {"linestyle": "--", "label": None})
+    return drawn
 
 
 def has_numbers(x: NDArray[Any]) -> bool:

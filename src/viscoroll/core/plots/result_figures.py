@@ -66,9 +66,8 @@ def master_curve(material: Any) -> Figure:
     curves = [(left, material.storage, "E'")]
     if material.prony.E.size:  # the loss of an elastic material is 0, which has no logarithm
         curves += [(left, material.loss, "E''"), (left.twinx(), material.tan_delta, "tan delta")]
-    # the legend has the solid part of each curve, its first line
     lines = [
-        plot_measured_range(axes, omega, modulus(omega), band, **line, label=label)[0]
+        plot_measured_range(axes, omega, modulus(omega), band, **line, label=label)
         for (axes, modulus, label), line in zip(curves, LINES, strict=False)
     ]
     for factor, *_ in curves[2:]:
