@@ -22,7 +22,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from sphinx_gallery.sorting import ExplicitOrder  # noqa: E402
 
 import viscoroll  # noqa: E402
-from viscoroll.roller_toml import read_law_source  # noqa: E402
+from viscoroll.presets import read_law_source  # noqa: E402
 
 warnings.simplefilter(
     "ignore", viscoroll.ModelWarning

@@ -39,7 +39,7 @@ from viscoroll.kernels.numerics.deferred_compilation import EntryPipeline
 from viscoroll.kernels.numerics.intrinsics import function_address, record_at
 from viscoroll.kernels.numerics.jit import kernel
 from viscoroll.materials.checked_netcdf import stated_errors
-from viscoroll.roller_toml import read_roller
+from viscoroll.presets import read_roller
 
 from . import stage
 from .runtime import least_seconds

@@ -12,10 +12,10 @@ import xarray as xr
 from scipy.stats import uniform
 
 import viscoroll as vr
-from viscoroll.core.blocks import thread_count
+from viscoroll.core.arrays import thread_count
 from viscoroll.core.errors import ParameterError
 from viscoroll.core.files import write_dataset
-from viscoroll.roller_toml import preset
+from viscoroll.presets import preset
 from viscoroll.sampling import sample
 
 from . import stage

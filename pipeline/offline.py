@@ -21,7 +21,7 @@ import viscoroll as vr
 from viscoroll.core.errors import FileError
 from viscoroll.materials.checked_netcdf import stated_errors
 from viscoroll.materials.material_toml import SECTIONS, parse_materials
-from viscoroll.roller_toml import preset, read_roller
+from viscoroll.presets import preset, read_roller
 
 from . import stage
 

@@ -26,7 +26,7 @@ from viscoroll.contact_mechanics.coupled_pair import CoupledPair
 from viscoroll.contact_mechanics.coupled_tables import measure_errors
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_dataset, write_text
-from viscoroll.roller_toml import read_roller
+from viscoroll.presets import read_roller
 from viscoroll.tables.law_dataset import Check
 from viscoroll.tables.table_files import is_law
 

@@ -1,11 +1,11 @@
-"""Elements of broadcast arrays by blocks, and blocks on threads (core/blocks.py)."""
+"""Elements of broadcast arrays by blocks, and blocks on threads (core/arrays.py)."""
 
 import threading
 
 import pytest
 from refusals import refused
 
-from viscoroll.core.blocks import available_cores, run_blocks, thread_count
+from viscoroll.core.arrays import available_cores, run_blocks, thread_count
 
 
 @pytest.mark.parametrize("threads", ["two", "0", "-5", "1.5"])

@@ -29,8 +29,7 @@ from closeness import close
 
 import viscoroll as vr
 from viscoroll.materials.material_toml import read_materials
-from viscoroll.presets import PAPER_CYLINDER
-from viscoroll.roller_toml import read_law_source, read_roller
+from viscoroll.presets import PAPER_CYLINDER, read_law_source, read_roller
 from viscoroll.runs.uncertain_inputs import read_column
 
 pytestmark = [

@@ -145,7 +145,7 @@ OWN = {
 }
 #: words of annotations of what may be a number with a unit, and of what is none
 NUMBERS = ("float", "ArrayLike", "Numbers", "Acting", "Course", "Any")
-NO_NUMBERS = ("Mapping", "PathLike", "Callable[[", "Iterable[str]", "Reasons", "Labels", "LawTable")
+NO_NUMBERS = ("Mapping", "Path", "Callable[[", "Iterable[str]", "Reasons", "Labels", "LawTable")
 #: left out: values that have a unit where they are used alone (tests of drives), files, mappings by
 #: name, results; ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
 LEFT_OUT = {

@@ -25,7 +25,7 @@ from refusals import each, refused
 import viscoroll as vr
 from viscoroll.materials.checked_netcdf import material_as_dataset
 from viscoroll.materials.material_toml import read_materials
-from viscoroll.roller_toml import read_law_source, read_roller
+from viscoroll.presets import read_law_source, read_roller
 from viscoroll.runs import read_run
 
 pytestmark = pytest.mark.usefixtures("here")

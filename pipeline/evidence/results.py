@@ -19,7 +19,7 @@ import numpy as np
 
 import viscoroll
 import viscoroll as vr
-from viscoroll.core.blocks import available_cores
+from viscoroll.core.arrays import available_cores
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_text
 

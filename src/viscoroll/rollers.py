@@ -22,6 +22,7 @@ from .core import (
     Result,
     Scale,
     SummaryRow,
+    attributes,
     broadcast_shape,
     check_array,
     check_bool,
@@ -32,6 +33,7 @@ from .core import (
     read_only,
     shape_error,
     slope_tan_cos,
+    unit_of,
 )
 from .laws import LawTable
 from .materials import (
@@ -179,16 +181,6 @@ _SAME_THICKNESS = 1e-9
 _SLS = ("E", "nu", "T_epsilon", "T_sigma")
 #: Names of the fields that are numbers.
 _NUMBERS = ("R", "m", *_SLS, "mu", "j", "g", "pressed")
-#: Units of the fields.
-UNITS = {
-    "R": "m",
-    "m": "kg m-1",
-    "E": "Pa",
-    "T_epsilon": "s",
-    "T_sigma": "s",
-    "g": "m s-2",
-    "load": "N m-1",
-}
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -308,22 +300,23 @@ class Cylinder(Methods):
         acts on pressure.
         Raises ParameterError as the class says.
         """
-        values: dict[str, Any] = {
-            "R": R,
-            "m": m,
-            "E": E,
-            "nu": nu,
-            "T_epsilon": T_epsilon,
-            "T_sigma": T_sigma,
-            "mu": mu,
-            "j": j,
-            "g": g,
-            "plane": plane,
-            "material": material,
-            "base": base,
-            "pressed": pressed if load is None else load,
-            "coupled": coupled if coupled is None else check_bool("coupled", coupled),
-        }
+        values = vars(self)  # by it, as the class is frozen
+        values.update(
+            R=R,
+            m=m,
+            E=E,
+            nu=nu,
+            T_epsilon=T_epsilon,
+            T_sigma=T_sigma,
+            mu=mu,
+            j=j,
+            g=g,
+            plane=plane,
+            material=material,
+            base=base,
+            pressed=pressed if load is None else load,
+            coupled=coupled if coupled is None else check_bool("coupled", coupled),
+        )
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
@@ -343,14 +336,10 @@ class Cylinder(Methods):
             )
         broadcast_shape(**{name: values[name] for name in numbers})
         check_choice("plane", plane, "strain", "stress")
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
         if material is None:
-            if np.ndim(values["T_epsilon"]) > 1:
-                raise shape_error(
-                    "T_epsilon", values["T_epsilon"].shape, "a number or a vector (n,)"
-                )
-            refuse_short_retardation(values["T_epsilon"], values["T_sigma"])
+            if np.ndim(self.T_epsilon) > 1:
+                raise shape_error("T_epsilon", self.T_epsilon.shape, "a number or a vector (n,)")
+            refuse_short_retardation(self.T_epsilon, self.T_sigma)
         if material is not None or base is not None:
             self._refuse_thick_layer(
                 self.pair.cylinder.thickness
@@ -507,7 +496,7 @@ class Cylinder(Methods):
         """
         values = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [
-            SummaryRow(name, format_value(value), UNITS.get(name, ""))
+            SummaryRow(name, format_value(value), unit_of(attributes(name, si=True)))
             for name, value in values.items()
         ]
         if self.material is not None:

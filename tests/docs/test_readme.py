@@ -134,7 +134,7 @@ def test_blocks_show_the_measured_numbers():
 
 
 def test_howto_scene_files_are_read(tmp_path):
-    from viscoroll.roller_toml import read_roller
+    from viscoroll.presets import read_roller
 
     for text in (
         text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")

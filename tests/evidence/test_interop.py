@@ -15,7 +15,7 @@ from closeness import close
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.roller_toml import read_law_source
+from viscoroll.presets import read_law_source
 
 LOADING = ROOT / "docs/loading"
 HEADERS = ROOT / "src/viscoroll/tables/c"

@@ -19,7 +19,7 @@ from viscoroll.laws.law_netcdf import law_table_of
 from viscoroll.laws.law_table import LawTable
 from viscoroll.laws.row_layout import FUNCTIONS
 from viscoroll.materials.checked_netcdf import checksum
-from viscoroll.roller_toml import read_law_source, read_roller
+from viscoroll.presets import read_law_source, read_roller
 from viscoroll.tables.law_dataset import check_table
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])

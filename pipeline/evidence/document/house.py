@@ -17,7 +17,7 @@ from msgspec import inspect as schema
 import viscoroll as vr
 from viscoroll.cli.program import parser
 from viscoroll.materials.material_toml import MaterialSection
-from viscoroll.roller_toml import CylinderSection, SceneSection
+from viscoroll.presets import CylinderSection, SceneSection
 from viscoroll.runs.run_rollers import RUN_SECTIONS
 from viscoroll.runs.runfile import RunSection
 

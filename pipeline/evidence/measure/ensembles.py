@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.core.blocks import run_blocks, thread_count
+from viscoroll.core.arrays import run_blocks, thread_count
 from viscoroll.runs import read_run, run_ensemble, verify
 from viscoroll.runs.run_store import Store
 

@@ -23,7 +23,7 @@ import numpy as np
 import viscoroll as vr
 from viscoroll import tables
 from viscoroll.core.errors import MissingDependencyError
-from viscoroll.roller_toml import read_law_source
+from viscoroll.presets import read_law_source
 
 from ...stage import ROOT, Row, Sizes
 from ...validation import FIELDS

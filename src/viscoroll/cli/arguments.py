@@ -115,7 +115,7 @@ def roller_of_argument(text: str) -> Any:
     Raises ParameterError for an unknown preset; FileError for a .toml file that cannot be read or
     describes no roller, and for an existing file whose name does not end in .toml.
     """
-    from ..roller_toml import preset, read_roller
+    from ..presets import preset, read_roller
 
     if text.lower().endswith(".toml"):
         return read_roller(text)

@@ -349,7 +349,7 @@ def law(arguments: Namespace) -> None:
     capital letters, and a name of a .h file that is no identifier of C; FileError for a file that
     cannot be read or written, and for .h of a range of alpha.
     """
-    from ..roller_toml import read_law_source
+    from ..presets import read_law_source
 
     material = None if arguments.file is None else read_law_source(arguments.file)
     vr.tables.export(vr.tables.law(material, alpha=arguments.alpha), arguments.output)
@@ -531,7 +531,7 @@ def fmu(arguments: Namespace) -> None:
     written, and MissingDependencyError without fmpy or a C compiler.
     """
     from ..materials import is_law
-    from ..roller_toml import SCENES, read_law_source, read_sections
+    from ..presets import SCENES, read_law_source, read_sections
 
     path = arguments.file
     content = read_sections(path)

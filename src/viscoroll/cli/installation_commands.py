@@ -171,7 +171,7 @@ def _lines() -> Iterator[tuple[str, str]]:
     (:func:`_check`).
     Raises ParameterError for a wrong $VISCOROLL_THREADS.
     """
-    from ..core.blocks import thread_count
+    from ..core.arrays import thread_count
     from ..kernels.numerics.cache_folder import cache_root
     from ..kernels.numerics.jit import sources_digest
 

@@ -556,7 +556,7 @@ def _figure_of_toml(path: str) -> Any:
 
     from ..core import read_toml
     from ..materials import read_materials
-    from ..roller_toml import SCENES, read_roller
+    from ..presets import SCENES, read_roller
 
     if not read_toml(path).keys() & set(SCENES):
         return next(iter(read_materials(path).values())).plot()

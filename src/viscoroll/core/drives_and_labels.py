@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
+from .arrays import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
 from .errors import ParameterError, described_error, shape_error
 from .quantities import convert, has_no_unit, split_unit, to_unit
 from .scale import HasUnits, Scale
@@ -177,36 +177,34 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
         refuses; a feedback for an argument that is neither force nor torque.
     """
     if isinstance(value, Schedule):
-        return _convert_fields(name, value, {"times": units.unit("t"), "values": units.unit(name)})
+        return _convert_fields(name, value, units, times="t", values=name)
     if not isinstance(value, Feedback):
         return to_unit(name, value, units.unit(name))
     if name not in _GAINS:
         sentence = f"{name} is a Feedback, which can only be given as force= or torque="
         raise ParameterError(name, "a Feedback", "no Feedback", sentence)
-    wanted = dict(zip(("value", "V", "omega"), map(units.unit, (name, *_GAINS[name])), strict=True))
-    value = _convert_fields(name, value, wanted)
+    V, omega = _GAINS[name]
+    value = _convert_fields(name, value, units, value=name, V=V, omega=omega)
     # the value of a feedback has its own unit; that of a schedule is stated by the schedule
-    schedule = (
-        convert_argument(name, value.value, units)
-        if isinstance(value.value, Schedule)
-        else value.value
-    )
-    return value if schedule is value.value else replace(value, value=schedule)
+    if isinstance(value.value, Schedule):
+        return replace(value, value=convert_argument(name, value.value, units))
+    return value
 
 
-def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
+def _convert_fields(name: str, load: Any, units: HasUnits, **quantities: str) -> Any:
     """Convert those fields of a schedule or a feedback that were given with a unit.
 
     name: name of the argument, for errors.
     load: :class:`Schedule` or :class:`Feedback`; not changed.
-    wanted: name of a field -> unit, as "m s-1"; for each field that may have a unit.
+    units: object whose method ``unit`` gives the unit of each quantity by name.
+    quantities: name of a field -> its quantity, for each field that may have a unit.
     Returns a new load of the same class without units; ``load`` itself if none of its fields has a
     unit.
     Raises ParameterError for a unit of another dimension or an unknown one, and for numbers that
     the class refuses after the conversion, as infinite ones.
     """
     converted = {
-        part: convert(f"{part} of {name}", getattr(load, part), unit, wanted[part])
+        part: convert(f"{part} of {name}", getattr(load, part), unit, units.unit(quantities[part]))
         for part, unit in load.units.items()
     }
     return replace(load, **converted) if converted else load
@@ -297,12 +295,13 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     if type(value) is type(unit) is float and low < value < np.inf:
         return value / unit
     if isinstance(value, Feedback):
-        sizes = {
-            "gain on V": value.V,
-            "gain on omega": value.omega,
-            "cylinders": unit * scale["V"] * scale["omega"],  # for its shape alone
-        }
-        broadcast_shape(**sizes)
+        broadcast_shape(
+            **{
+                "gain on V": value.V,
+                "gain on omega": value.omega,
+                "cylinders": unit * scale["V"] * scale["omega"],  # for its shape alone
+            }
+        )
         gains = value.V * scale["V"] / unit, value.omega * scale["omega"] / unit
         return Feedback(make_dimensionless(name, value.value, scale), *gains)
     if callable(value):
@@ -498,7 +497,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
         return given, None
     given = {name: convert_argument(name, value, units) for name, value in given.items()}
     arrays, series = (
-        {name: value for name, value in given.items() if kind and isinstance(value, kind)}
+        {name: value for name, value in given.items() if isinstance(value, kind)}
         for kind in (_loaded_type("xarray", "DataArray"), _loaded_type("pandas", "Series"))
     )
     labelled = arrays | series
@@ -530,10 +529,10 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
 
 
 def _loaded_type(module: str, name: str) -> Any:
-    """Return the type ``name`` of a ``module`` if the program has imported that module, else
-    None.
+    """Return the type ``name`` of a ``module`` if the program has imported that module, else (), of
+    which nothing is an instance.
     """
-    return getattr(sys.modules.get(module), name, None)
+    return getattr(sys.modules.get(module), name, ())
 
 
 def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:

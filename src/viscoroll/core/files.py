@@ -23,7 +23,7 @@ from dataclasses import is_dataclass
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, get_args, get_type_hints
 
 from ..kernels.numerics.cache_folder import read_private, write_private
 from .errors import FileError, ParameterError, suggestion
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 else:
     #: Types of results, for type checkers alone: no library is imported for them.
     DataArray = DataFrame = Dataset = Figure = Any
+
+#: Path of a file, as callers give it.
+FilePath: TypeAlias = str | PathLike[str]
 
 # --- Files that are written whole, and read if they are as they were written ---
 
@@ -82,7 +85,7 @@ def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
 
 
 @contextmanager
-def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
+def replace_file(path: FilePath) -> Iterator[Path]:
     """Give a temporary path beside ``path``, and rename that file to ``path`` when the body of the
     ``with`` ends.
 
@@ -211,7 +214,7 @@ def save_kept(path: Path, most: int, arrays: Mapping[str, Any]) -> None:
             file.unlink()
 
 
-def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: str) -> bytes:
+def read_sealed(path: FilePath, max_bytes: int, kind: str, remedy: str) -> bytes:
     """Return the bytes of a file, compared with the seal at their end if there is one.
 
     Parameters
@@ -254,13 +257,13 @@ def _seal_of(content: bytes | memoryview) -> bytes:
     return _SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
-def write_bytes(path: str | PathLike[str], content: bytes) -> None:
+def write_bytes(path: FilePath, content: bytes) -> None:
     """Write ``content`` to a file by :func:`replace_file`, which raises FileError."""
     with replace_file(path) as temporary:
         temporary.write_bytes(content)
 
 
-def write_text(path: str | PathLike[str], text: str) -> None:
+def write_text(path: FilePath, text: str) -> None:
     """Write ``text`` to a file in UTF-8, by :func:`replace_file`, which raises FileError."""
     write_bytes(path, text.encode())
 
@@ -285,7 +288,7 @@ def fix_texts(dataset: Dataset) -> Dataset:
 
 def write_dataset(
     dataset: Dataset,
-    path: str | PathLike[str],
+    path: FilePath,
     encoding: dict[str, Any] | None = None,
     *,
     sealed: bool = False,
@@ -354,7 +357,7 @@ _TYPE_NAMES = {
 }
 
 
-def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
+def read_toml(path: FilePath) -> dict[str, Any]:
     """Return the content of a TOML file, as tomllib reads it: name of a key or section -> value or
     dict.
 
@@ -371,8 +374,6 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     except OverflowError as error:
         problem = "has an integer of more than 64 bits: write it with a decimal point"
         raise FileError(path, problem) from error
-    except FileError:
-        raise
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
     except (
@@ -384,7 +385,7 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     return content
 
 
-def _finite(path: str | PathLike[str], text: str) -> float:
+def _finite(path: FilePath, text: str) -> float:
     """Return the number that ``text`` in a TOML file means.
 
     path: path of the file, for the error.
@@ -470,12 +471,18 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
     not have gives "".
     """
     for key in keys:
-        # of a union, as Section | None, the members too
-        sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
-        kind = next(
-            (get_type_hints(each)[key] for each in sections if key in get_type_hints(each)), None
-        )
+        hints = map(get_type_hints, _sections_in(kind))
+        kind = next((each[key] for each in hints if key in each), None)
     return ", ".join(repr(each) for each in get_args(kind) if isinstance(each, str))
+
+
+def _sections_in(kind: Any) -> list[Any]:
+    """Return those of a type, or of the members of a union as Section | None, that have keys."""
+    return [
+        each
+        for each in (kind, *get_args(kind))
+        if is_dataclass(each) or hasattr(each, "__struct_fields__")
+    ]
 
 
 def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
@@ -493,11 +500,7 @@ def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
     hints = get_type_hints(kind)
     check_keys(path, name, content, hints)
     for key, value in content.items():
-        kinds = hints[key], *get_args(hints[key])
-        subsections = [
-            each for each in kinds if is_dataclass(each) or hasattr(each, "__struct_fields__")
-        ]
-        if subsections and isinstance(value, dict):
+        if (subsections := _sections_in(hints[key])) and isinstance(value, dict):
             _check_all_keys(path, f"{name}.{key}", value, subsections[0])
 
 

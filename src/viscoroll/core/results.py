@@ -7,14 +7,13 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import NDArray
+from .arrays import NDArray
 from .drives_and_labels import Labels, dataset_axes, state_axes
-from .files import DataFrame, Dataset, Figure
+from .files import DataFrame, Dataset, Figure, FilePath
 from .scale import attributes
 
 #: Rows of a summary in a notebook: more do not fit a screen.
@@ -85,7 +84,7 @@ class Result:
         names = {name: column_name(str(name), unit_of(data[name].attrs)) for name in data.variables}
         return data.to_dataframe().rename(columns=names).rename_axis(index=names)
 
-    def plot(self: Any, path: str | PathLike[str] | None = None) -> Figure:
+    def plot(self: Any, path: FilePath | None = None) -> Figure:
         """Draw the result, and save the figure if a path is given.
 
         Parameters
@@ -356,9 +355,8 @@ class Values(Result):
         """
         shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
         title = self._title + (f", {shape}" if shape else "")
-        units = {name: unit_of(self._attributes(name)) for name in self._values}
         return title, [
-            SummaryRow(name, format_value(value), units[name])
+            SummaryRow(name, format_value(value), unit_of(self._attributes(name)))
             for name, value in self._values.items()
         ]
 
@@ -405,7 +403,7 @@ class Values(Result):
                 # netCDF has no truth values
                 numbers = array.astype(np.int8) if array.dtype == bool else array
                 whole = np.broadcast_to(numbers, shape) if array.ndim else numbers
-                data[name] = xr.Variable(dims if array.ndim else (), whole, self._attributes(name))
+                data[name] = dims if array.ndim else (), whole, self._attributes(name)
         return xr.Dataset(data, coords, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:

@@ -420,15 +420,19 @@ class Cover(Bodies):
         if other_thickness is not None:
             other_thickness = read_only(self._check_other_thickness(other_thickness, given, part))
         bodies = (series, other) if on == "cylinder" else (other, series)
-        share = part if on == "cylinder" else 1.0 - part
-        values: Any = dict(
-            zip(("cylinder", "base"), bodies, strict=True), share=share, on=on, other_nu=other_nu
+        vars(self).update(
+            cylinder=bodies[0],
+            base=bodies[1],
+            share=part if on == "cylinder" else 1.0 - part,
+            on=on,
+            other_nu=other_nu,
+            other_thickness=other_thickness,
+            thickness=read_only(given),
+            nu=read_only(ratio),
         )
-        values["other_thickness"] = other_thickness
-        self.__dict__.update(values, thickness=read_only(given), nu=read_only(ratio))
         super().__post_init__()
         # of the series and the share, which are single, the shape would be ()
-        self.__dict__["shape"] = given.shape
+        vars(self)["shape"] = given.shape
 
     @staticmethod
     def _check_other_thickness(value: ArrayLike, thickness: Any, part: float) -> Any:
@@ -568,11 +572,19 @@ class Cover(Bodies):
         >>> vr.Cover(1.0, nu=0.3, thickness=0.5).of_thickness([0.2, 0.4]).thickness
         array([0.2, 0.4])
         """
-        more = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
-        if self.other_thickness is not None:
-            ratio = np.ravel(self.other_thickness)[0] / np.ravel(self.thickness)[0]
-            more["other_thickness"] = ratio * np.asarray(thickness)
-        return Cover(self.layer, nu=self.nu if nu is None else nu, thickness=thickness, **more)
+        other = self.other_thickness
+        if other is not None:
+            other = np.ravel(other)[0] / np.ravel(self.thickness)[0] * np.asarray(thickness)
+        return Cover(
+            self.layer,
+            nu=self.nu if nu is None else nu,
+            thickness=thickness,
+            on=self.on,
+            part=self.part,
+            other_nu=self.other_nu,
+            other=self.other,
+            other_thickness=other,
+        )
 
     def __getitem__(self, which: Any) -> Cover:
         return self.of_thickness(
@@ -582,24 +594,19 @@ class Cover(Bodies):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         """Values that determine the covers: all parameters, arrays by their bytes."""
-        numbers = (
-            np.shape(self.thickness),
-            *(np.asarray(each).tobytes() for each in (self.thickness, self.nu)),
-        )
-        second = (
-            None if self.other_thickness is None else np.asarray(self.other_thickness).tobytes()
-        )
-        return self.layer, numbers, self.on, self.part, self.other_nu, self.other, second
+        given = self.thickness, self.nu, self.other_thickness
+        numbers = [None if each is None else np.asarray(each).tobytes() for each in given]
+        shape = np.shape(self.thickness)
+        return self.layer, shape, *numbers, self.on, self.part, self.other_nu, self.other
 
     def __repr__(self) -> str:
         """Return the call that makes the cover, without parameters that have no effect."""
-        other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
-        other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
-        other += (
-            ""
-            if self.other_thickness is None
-            else f", other_thickness={format_value(self.other_thickness)}"
-        )
-        nu = format_value(self.nu)
-        thickness = format_value(self.thickness)
-        return f"Cover({self.layer!r}, nu={nu}, thickness={thickness}, on={self.on!r}{other})"
+        text = f"Cover({self.layer!r}, nu={format_value(self.nu)}"
+        text += f", thickness={format_value(self.thickness)}, on={self.on!r}"
+        if self.part < 1.0:
+            text += f", part={self.part!r}, other_nu={self.other_nu!r}"
+        if self.other.alpha > 1.0:
+            text += f", other={self.other!r}"
+        if self.other_thickness is not None:
+            text += f", other_thickness={format_value(self.other_thickness)}"
+        return f"{text})"

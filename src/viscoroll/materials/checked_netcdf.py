@@ -19,14 +19,13 @@ import tomllib
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from importlib.resources import files
-from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from .. import __version__
-from ..core import PAPER, Dataset, FileError, ParameterError, read_sealed, seal_matches
+from ..core import PAPER, Dataset, FileError, FilePath, ParameterError, read_sealed, seal_matches
 from .measured_data import Measured, shifts_as_toml, shifts_of_toml
 from .prony import Prony
 
@@ -63,7 +62,8 @@ class Kind(NamedTuple):
     functions : name of each function in the order of its coefficients -> meaning.
     dims : dimensions of the coefficients.
     terms : what the numbers of a function are, in words.
-    others : name of each other variable -> (dimensions, meaning).
+    others : name of each other variable -> (dimensions, attributes: long_name, and units unless it
+    is dimensionless or in T_ref).
     comment : how the numbers are evaluated.
     error : attribute of a function with its largest error.
     """
@@ -72,7 +72,7 @@ class Kind(NamedTuple):
     functions: dict[str, str]
     dims: list[str]
     terms: str
-    others: dict[str, tuple[list[str], str]]
+    others: dict[str, Any]
     comment: str
     error: str
 
@@ -143,21 +143,16 @@ def make_dataset(
     data = {}
     for n, (name, meaning) in enumerate(about.functions.items()):
         labels = {"long_name": f"{about.terms}: {meaning}", about.error: errors[name]}
-        data[name] = xr.Variable(about.dims, law.coefficients[..., n], labels)
-    for name, (dims, meaning) in about.others.items():
+        data[name] = about.dims, law.coefficients[..., n], labels
+    for name, (dims, labels) in about.others.items():
         value = np.asarray(getattr(law, name))
-        value = value.astype(np.int32) if value.dtype.kind == "i" else value
-        unit = (
-            {"units": "s"} if name == "T_ref" else {}
-        )  # the other variables are dimensionless or in T_ref
-        data[name] = xr.Variable(dims, value, {"long_name": meaning, **unit})
+        data[name] = dims, value.astype(np.int32) if value.dtype.kind == "i" else value, labels
     dataset = xr.Dataset(
         data,
         attrs={
-            "Conventions": "CF-1.11, ACDD-1.3",
+            **_TEXTS["file"],
             "title": f"Contact law of rolling with partial slip: {title}",
             "summary": about.summary,
-            "keywords": "rolling contact, viscoelasticity, rolling resistance",
             KIND: kind,
             SCHEMA: np.int32(VERSION),
             **attributes,
@@ -165,7 +160,6 @@ def make_dataset(
             "references": PAPER,
             "source": f"viscoroll {__version__}",
             "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}",
-            "license": "BSD-3-Clause",
         },
     )
     return dataset.assign_attrs({CHECKSUM: checksum(dataset_content(dataset).numbers, kind)})
@@ -179,7 +173,7 @@ def stated_errors(dataset: Any) -> dict[str, float]:
     return {name: float(dataset[name].attrs[kind.error]) for name in kind.functions}
 
 
-def is_law(path: str | PathLike[str]) -> bool:
+def is_law(path: FilePath) -> bool:
     """Return whether a file is the law of a material, a pair or a cover, by its attribute
     ``viscoroll_table``.
 
@@ -198,7 +192,7 @@ def is_law(path: str | PathLike[str]) -> bool:
     return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 
 
-def read_law(path: str | PathLike[str]) -> Content:
+def read_law(path: FilePath) -> Content:
     """Return the content of a law file, verified by its seal, schema and checksum.
 
     path: path of the file; a file without a seal is verified by its schema and checksum alone.
@@ -225,7 +219,7 @@ def read_law(path: str | PathLike[str]) -> Content:
     return content
 
 
-def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Content:
+def read_content(path: FilePath, expected: str, remedy: str) -> Content:
     """Read a netCDF file by h5py alone, which takes a tenth of the time of xarray.
 
     path: path of the file.
@@ -303,7 +297,7 @@ SUFFIX = ".nc"
 _SCHEMA = "viscoroll material 1"
 #: variables of each form of the series
 _FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
-#: variable -> its meaning and unit
+#: variable -> its attributes long_name and units
 _MEANING = _TEXTS["material"]
 #: variables that a file may lack
 _OPTIONAL = ("density", "thickness", "temperature", "nu_instant")
@@ -345,7 +339,7 @@ def material_as_dataset(material: Any) -> Dataset:
         name: (
             ("rate" if name in _ERRORS else "mode",) * np.ndim(value),  # () of a number
             value,
-            dict(zip(("long_name", "units"), _MEANING[name], strict=True)),
+            _MEANING[name],
         )
         for name, value in held.items()
         if value is not None
@@ -353,15 +347,11 @@ def material_as_dataset(material: Any) -> Dataset:
     return xr.Dataset(
         data,
         attrs={
-            "Conventions": "CF-1.11",
+            **_TEXTS["material_file"],
             "schema": _SCHEMA,
             "title": material.name or "linear viscoelastic material",
             "name": material.name,
             "given": "creep" if series.by_creep else "relaxation",
-            "law": (
-                "E(t) = E_long (1 + sum E exp(-t/(tau T_ref))), J(t) = (1 - sum J exp(-t/(T "
-                "T_ref)))/E_long"
-            ),
             "source": f"viscoroll {__version__}",
             "measured": getattr(band, "source", ""),
             "shifts": "\n".join(f"{key} = {value}" for key, value in shifts.items()),
@@ -369,7 +359,7 @@ def material_as_dataset(material: Any) -> Dataset:
     )
 
 
-def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
+def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
     """Read a file of :meth:`viscoroll.Material.to_netcdf`.
 
     path: path of the file.

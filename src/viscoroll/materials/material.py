@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from os import PathLike
 from typing import Any, Literal
 
 import numpy as np
@@ -15,6 +14,7 @@ from ..core import (
     ArrayLike,
     Dataset,
     Figure,
+    FilePath,
     Floats,
     ParameterError,
     Result,
@@ -129,10 +129,10 @@ class Material(FromPrograms):
             _refuse_no_shift(
                 "shift", self.shift, "a WLF, an Arrhenius or a function of the temperature"
             )
-        is_text = isinstance(self.vertical_shift, str)
-        if self.vertical_shift is not None and not (is_text and self.vertical_shift == "entropic"):
+        vertical = self.vertical_shift
+        if not (isinstance(vertical, str | None) and vertical in (None, "entropic")):
             _refuse_no_shift(
-                "vertical_shift", self.vertical_shift, "'entropic' or a function of the temperature"
+                "vertical_shift", vertical, "'entropic' or a function of the temperature"
             )
 
     @classmethod
@@ -540,7 +540,7 @@ class Material(FromPrograms):
 
         return master_curve(self)
 
-    def to_netcdf(self, path: str | PathLike[str]) -> None:
+    def to_netcdf(self, path: FilePath) -> None:
         """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed
         by a SHA-256.
 
@@ -563,7 +563,7 @@ class Material(FromPrograms):
         write_dataset(self.to_xarray(), path, sealed=True)
 
     @classmethod
-    def from_netcdf(cls, path: str | PathLike[str]) -> Material:
+    def from_netcdf(cls, path: FilePath) -> Material:
         """Read a file of :meth:`to_netcdf`, to the bit (``tests/materials/test_material.py``).
 
         Parameters

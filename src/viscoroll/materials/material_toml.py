@@ -8,16 +8,22 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
-from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
-import msgspec
 import numpy as np
 
-from ..core import FileError, as_section_error, as_struct, check_number, read_toml, section_error
+from ..core import (
+    FileError,
+    FilePath,
+    as_section_error,
+    as_struct,
+    check_number,
+    read_toml,
+    section_error,
+)
 from .checked_netcdf import SUFFIX, is_law, read_law
 from .material import Material
 from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift, shifts_as_toml
@@ -29,14 +35,16 @@ SECTIONS = ("material", "base")
 _NO_MATERIAL = "section [material] is missing: it needs E and nu"
 
 
-class PronySection(msgspec.Struct):
+@dataclass
+class PronySection:
     """Key prony = { E = [...], tau = [...] }: the parameters of :class:`Prony`."""
 
     E: list[float]
     tau: list[float]
 
 
-class CreepSection(msgspec.Struct):
+@dataclass
+class CreepSection:
     """Key creep = { J = [...], T = [...] }: the parameters of :meth:`Prony.creep`."""
 
     J: list[float]
@@ -44,7 +52,8 @@ class CreepSection(msgspec.Struct):
     alpha: float | None = None
 
 
-class FileSection(msgspec.Struct, kw_only=True):
+@dataclass(kw_only=True)
+class FileSection:
     """Section [material] or [base] that names a netCDF or TOML file.
 
     thickness, density : as in :class:`MaterialSection`; they replace those of the file.
@@ -61,7 +70,8 @@ class FileSection(msgspec.Struct, kw_only=True):
     temperature: float | None = None
 
 
-class MaterialSection(FileSection, kw_only=True):
+@dataclass(kw_only=True)
+class MaterialSection(FileSection):
     """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`,
     and a temperature.
 
@@ -92,7 +102,7 @@ class MaterialSection(FileSection, kw_only=True):
     nu_instant: float | None = None
 
 
-def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
+def read_materials(path: FilePath) -> dict[str, Material]:
     """Read the materials of a file.
 
     Parameters
@@ -224,9 +234,7 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
     """
     if not (isinstance(content, dict) and "file" in content):
         return as_struct(path, name, content, MaterialSection)
-    for key in content.keys() & set(MaterialSection.__struct_fields__) - set(
-        FileSection.__struct_fields__
-    ):
+    for key in content.keys() & MaterialSection.__annotations__.keys() - {"file"}:
         problem = (
             f"{key}: must be left out beside file; to change it, write the content of the "
             "file here in its place"
@@ -248,19 +256,16 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
     without a shift, and a file that the section names and that is wrong.
     """
     section = _parse_section(path, name, content)
+    given = {key: value for key, value in vars(section).items() if value is not None}
+    temperature = given.pop("temperature", None)
     with as_section_error(path, name):
+        if shift := _shift_of(path, name, section):
+            given["shift"] = given.pop(type(shift).__name__.lower())
         if section.file is None:
-            material = _make_material(path, name, section)
+            material = _make_material(path, name, given)
         else:
-            material = _read_other_file(path, name, Path(path).parent / section.file)
-            values = {"thickness": section.thickness, "density": section.density}
-            material = replace(
-                material, **{key: value for key, value in values.items() if value is not None}
-            )
-        shift = _shift_of(path, name, section)
-        temperature = section.temperature
-        vertical = section.vertical_shift or material.vertical_shift
-        material = replace(material, shift=shift or material.shift, vertical_shift=vertical)
+            other = _read_other_file(path, name, Path(path).parent / given.pop("file"))
+            material = replace(other, **given)
         if temperature is None:
             return material
         if material.shift is None:
@@ -323,12 +328,13 @@ def _material_of_law(path: Path) -> Material:
     return parse_materials(path, content)["material"]
 
 
-def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
+def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
     """Return the material of a section at its reference temperature, by its standard linear solid
     or its series.
 
     path, name: path of the file and name of the section, for errors.
-    section: checked content of the section, without the key file.
+    given: what the section states, by its keys, checked; ``shift`` in place of wlf and arrhenius.
+        It is changed.
     Returns the :class:`Material`, at the temperature ``reference``: with T_epsilon and T_sigma the
     standard linear solid, else with the series and T_ref (1 s if it is not given); elastic if the
     section has neither times nor a series.
@@ -336,32 +342,27 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
     either beside T_ref or a series, both series, and a series that is wrong; ParameterError for
     another value out of range.
     """
-    nu = section.nu
-    if nu is None:
-        if not math.isinf(section.E):
+    if "nu" not in given:
+        if not math.isinf(given["E"]):
             raise section_error(path, name, "", "needs nu")
-        nu = Material.rigid().nu
-    more = {
-        key: getattr(section, key)
-        for key in ("name", "density", "thickness", "measured", "nu_instant")
+        given["nu"] = Material.rigid().nu
+    if "reference" in given:
+        reference = given.pop("reference")
+        given["temperature"] = check_number("reference", reference, above=ABSOLUTE_ZERO)
+    forms: dict[str, Any] = {
+        key: vars(given.pop(key)) for key in ("prony", "creep") if key in given
     }
-    reference = section.reference
-    # None, not given, stays; so does 0 degrees Celsius, which needs no check
-    more["temperature"] = reference and check_number("reference", reference, above=ABSOLUTE_ZERO)
-    series = parse_series(
-        path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep})
-    )
-    times = section.T_epsilon, section.T_sigma
-    if times != (None, None):
-        if None in times or section.T_ref is not None or series:
+    if series := parse_series(path, name, forms):
+        given["prony"] = series
+    if times := given.keys() & {"T_epsilon", "T_sigma"}:
+        if len(times) == 1 or given.keys() & {"T_ref", "prony"}:
             problem = (
                 "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony "
                 "and creep"
             )
             raise section_error(path, name, "", problem)
-        return Material.sls(section.E, nu, *times, **more)  # type: ignore[arg-type]
-    T_ref = 1.0 if section.T_ref is None else section.T_ref
-    return Material(section.E, nu, series or Prony.elastic(), T_ref, **more)
+        return Material.sls(**given)
+    return Material(**given)
 
 
 def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
@@ -378,7 +379,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     Raises FileError for both keys, values out of range, and lists of different lengths; TypeError
     for another key in such a dict, ValueError for arrays of different lengths in a list.
     """
-    forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
+    forms = {key: given[key] for key in ("prony", "creep") if key in given}
     if len(forms) > 1:
         raise section_error(
             path, name, "creep", "prony and creep are both given: give one of the two"

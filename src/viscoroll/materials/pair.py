@@ -81,16 +81,7 @@ class Pair:
                 raise ParameterError(named, f"{body!r:.60}", "a Material")
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
             raise ParameterError("base", "rigid", "a deformable body, since the cylinder is rigid")
-        if self.covered is not None:
-            self._refuse_covers()
-
-    def _refuse_covers(self) -> None:
-        """Refuse pairs with a layer to which the law of a cover does not apply; called only where a
-        body has a thickness.
-
-        Raises ParameterError for a layer in plane stress.
-        """
-        if self.plane != "strain":
+        if self.covered is not None and self.plane != "strain":
             raise ParameterError(
                 "plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)"
             )
@@ -121,12 +112,8 @@ class Pair:
         other = self.half_space
         if one is other or Solid in (type(one), type(other)):
             return one is other
-        return (one.E, one.nu, one.prony, one.T_ref) == (
-            other.E,
-            other.nu,
-            other.prony,
-            other.T_ref,
-        )
+        names = ("E", "nu", "prony", "T_ref")
+        return all(getattr(one, name) == getattr(other, name) for name in names)
 
     @cached_property
     def _moduli(self) -> tuple[Any, Any]:

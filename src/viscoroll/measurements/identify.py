@@ -33,7 +33,7 @@ from ..core import (
     warn_of_model,
 )
 from ..materials import SECTIONS, parse_shifts
-from ..roller_toml import read_roller
+from ..presets import read_roller
 from ..rollers import Cylinder
 from .dma_columns import CYCLES, meanings
 from .identification_result import Identification

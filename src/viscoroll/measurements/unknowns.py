@@ -59,7 +59,7 @@ class Unknown(NamedTuple):
 
     @staticmethod
     def bounds(name: str) -> dict[str, Any]:
-        """Return what values an unknown may have, as arguments of :func:`.checks.check_array`.
+        """Return what values an unknown may have, as arguments of :func:`.arrays.check_array`.
 
         name : name of the unknown, perhaps with that of its record, as "V0:run".
         Returns {"unit": SI unit} and "low": least value (-inf: any) of a linear unknown, or

@@ -8,7 +8,7 @@ material.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,7 +29,6 @@ from ..kernels.records import (
     COL_COEFFICIENTS,
     COL_SCALE,
     COL_START,
-    N_DRIVE_FUNCTIONS,
     NOT_PRESCRIBED,
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
@@ -50,14 +49,6 @@ _BESIDE = (
     ("brake", "omega", "omega is prescribed"),
     ("drag", "omega", "omega is prescribed"),
 )
-#: Names of the gains in the order of the kernel's.
-_GAINS = (
-    "gain of force on V",
-    "gain of force on omega",
-    "gain of torque on V",
-    "gain of torque on omega",
-)
-
 #: The function of time that is 0.
 _NOTHING = Piecewise(np.zeros((1, 1)), np.zeros((1, 1, 1)))
 #: Code in the kernels of the prescribed speed, by its name; "" for none.
@@ -84,8 +75,8 @@ class DriveFunctions:
 
     Attributes
     ----------
-    functions : name -> :class:`.drive_pieces.Piecewise`; always "force", "torque" and "brake" (0
-        where not given), and the prescribed speed, "omega" or "V", if there is one.
+    functions : name -> :class:`.drive_pieces.Piecewise` of what is given of "force", "torque",
+        "brake" and the prescribed speed, "omega" or "V".
     tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
     gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last
@@ -100,45 +91,36 @@ class DriveFunctions:
     end: float
 
     @cached_property
-    def _function_motions(self) -> int:
-        """Number of motions that have functions or slopes of their own; 1 if all are alike.
+    def counts(self) -> tuple[int, int]:
+        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
+        all are alike.
 
-        By it :meth:`block` and :meth:`for_kernel` decide whether all motions share their pieces;
-        :attr:`counts` has the number of the gains too.
+        By the first :meth:`block` and :meth:`for_kernel` decide whether all motions share their
+        pieces.
         Raises ParameterError if two of the functions, or a function and the slope, have values for
-        different numbers of motions, both other than 1.
+        different numbers of motions, both other than 1.  Whether the two numbers agree is not
+        checked here.
         """
         counts = {name: len(f.terms) for name, f in self.functions.items()}
         counts["slope"] = self.tangent.size
         shape = broadcast_shape(
             **{name: np.empty(count) for name, count in counts.items() if count != 1}
         )
-        return shape[0] if shape else 1
+        return shape[0] if shape else 1, self.gains.shape[1]
 
-    @property
-    def counts(self) -> tuple[int, int]:
-        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
-        all are alike.
-
-        Raises ParameterError if two of the functions, or a function and the slope, have values for
-        different numbers of motions, both other than 1.  Whether the two numbers agree is not
-        checked here.
-        """
-        return self._function_motions, self.gains.shape[1]
-
-    @property
+    @cached_property
     def corners(self) -> int:
         """Number of corners of a motion's schedules, and of pieces of its callables; 0 for numbers
         alone.
         """
         return sum(f.corners for f in self.functions.values())
 
-    @property
+    @cached_property
     def error(self) -> float:
         """Largest difference seen between a callable and its fit, dimensionless; 0.0 without
         callables.
         """
-        return max(f.error for f in self.functions.values())
+        return max((f.error for f in self.functions.values()), default=0.0)
 
     def block(self, most: int) -> int:
         """Return how many motions to pack at a time, so that their pieces take some
@@ -149,10 +131,11 @@ class DriveFunctions:
         Returns an int in 1 ... ``most``.
         Raises ParameterError as :attr:`counts` does.
         """
-        if self._function_motions == 1:
+        if self.counts[0] == 1:
             return most
         # start and scale, then the terms of five functions (:attr:`pieces`), 8 bytes each
-        columns = 2 + 5 * max(f.terms.shape[-1] for f in self.functions.values())
+        terms = max((f.terms.shape[-1] for f in self.functions.values()), default=1)
+        columns = 2 + 5 * terms
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def _blocks(self, count: int) -> list[slice]:
@@ -218,29 +201,13 @@ class DriveFunctions:
         PRESCRIBED_V).
         Raises ParameterError where a prescribed speed jumps.
         """
-        pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
+        some = self
+        if self.counts[0] > 1:
+            functions = {name: f.take(index) for name, f in self.functions.items()}
+            tangent = self.tangent[index] if self.tangent.size > 1 else self.tangent
+            some = replace(self, functions=functions, tangent=tangent)
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
-        return (
-            np.ascontiguousarray(pieces),
-            np.ascontiguousarray(gains),
-            _PRESCRIBED_CODES[self.prescribed],
-        )
-
-    def _take(self, index: Any) -> DriveFunctions:
-        """Return the :class:`DriveFunctions` of some motions; their gains stay those of all
-        motions.
-
-        index: index of numpy, a slice or a vector of integers, that selects the motions; what is
-        the same for all motions stays.
-        Returns a new object; its functions and tangent are those of the selected motions, in the
-        order of ``index``.
-        """
-        functions = {name: f.take(index) for name, f in self.functions.items()}
-        return replace(
-            self,
-            functions=functions,
-            tangent=self.tangent[index] if self.tangent.size > 1 else self.tangent,
-        )
+        return some.pieces, np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
     @property
     def acts_at_end(self) -> bool:
@@ -253,29 +220,22 @@ class DriveFunctions:
             return True
         # the coefficients of the last piece, without its start and scale
         return any(
-            self.for_kernel(part)[0][:, -1, 2:].any()
-            for part in self._blocks(self._function_motions)
+            self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self.counts[0])
         )
 
 
-@cache
-def undriven() -> KernelDrive:
-    """Return the :data:`KernelDrive` of free motions: pieces (1, 1, columns) and gains (4, 1), all
-    0; NOT_PRESCRIBED.
-
-    The same arrays are returned by every call.
-    """
-    return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
+#: Drive of free motions: nothing acts.
+UNDRIVEN = DriveFunctions({}, np.zeros(()), prescribed="", gains=np.zeros((4, 1)), end=0.0)
 
 
 class DrivenStart(NamedTuple):
     """The checked drive of motions with their start speeds, dimensionless.
 
-    functions : functions of time that drive the motions; None of free motions.
+    functions : functions of time that drive the motions; of free motions :data:`UNDRIVEN`.
     V0, omega0 : start speeds, numbers or (n,); a prescribed one has its value at t = 0.
     """
 
-    functions: DriveFunctions | None
+    functions: DriveFunctions
     V0: Any
     omega0: Any
 
@@ -294,33 +254,29 @@ def prepare_drive(
     both prescribed, or a load beside the prescribed speed from which it follows; for a start that
     is missing, out of range, or not the prescribed one; for shapes of V0 and omega0 that do not
     broadcast.  Exceptions of a callable pass.
-    Returns the :class:`DrivenStart`; its ``functions`` are None where the drive is empty, in which
-    case ``end``, ``rtol`` and ``resolve`` are ignored.
+    Returns the :class:`DrivenStart`; its ``functions`` are :data:`UNDRIVEN` where the drive is
+    empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
     if not drive.acts:
-        return DrivenStart(None, *start_speeds(V0, omega0))
+        return DrivenStart(UNDRIVEN, *start_speeds(V0, omega0))
     tangent = np.asarray(slope_tan_cos(drive.slope)[0])
     _refuse_both(drive)
-    prescribed = next((name for name in ("omega", "V") if getattr(drive, name) is not None), "")
-    names = ["force", "torque", "brake", *([prescribed] if prescribed else [])]
+    prescribed = "omega" if drive.omega is not None else "V" if drive.V is not None else ""
     functions = {
         name: piecewise(
-            name,
-            getattr(drive, name),
-            end,
-            rtol,
-            low=0.0 if name == "brake" else -np.inf,
-            resolve=resolve,
+            name, given, end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
         )
-        for name in names
+        for name, given in drive.values.items()
+        if name not in ("slope", "drag")
     }
     checked_drive = DriveFunctions(
         functions=functions, tangent=tangent, prescribed=prescribed, gains=_gains(drive), end=end
     )
     starts = {"V": V0, "omega": omega0}
     if prescribed:
-        start = starts[prescribed], checked_drive, getattr(drive, prescribed)
-        starts[prescribed] = _prescribed_start(prescribed, *start)
+        starts[prescribed] = _prescribed_start(
+            prescribed, starts[prescribed], checked_drive, drive.values[prescribed]
+        )
     for name, start in starts.items():
         if start is None:
             raise ParameterError(
@@ -393,34 +349,33 @@ def _gains(drive: Drive) -> Floats:
     Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where
     nothing is given.
     """
-    pairs = [
-        (x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0)
-        for x in (drive.force, drive.torque)
-    ]
-    rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
-    rows[3] = rows[3] - check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
-    count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
-    return np.array([np.broadcast_to(row, count) for row in rows])
+    gains = {
+        f"gain of {name} on {speed}": np.atleast_1d(
+            getattr(load, speed) if isinstance(load, Feedback) else 0.0
+        )
+        for name, load in (("force", drive.force), ("torque", drive.torque))
+        for speed in ("V", "omega")
+    }
+    drag = check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
+    gains["gain of torque on omega"] = gains["gain of torque on omega"] - drag
+    count = broadcast_shape(**gains)
+    return np.array([np.broadcast_to(gain, count) for gain in gains.values()])
 
 
-def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
+def refuse_rest(rest: Any, functions: DriveFunctions) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
     rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is
     not examined but only quoted in the message, so that the caller must not call this function
     where it is None.
-    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`; None of
-    free motions, which may end at rest.
+    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`.
     Returns None where the motion may end at rest.
     """
-    if functions is not None and functions.acts_at_end:
+    if functions.acts_at_end:
         sentence = (
-            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the "
-            "end of the motion: "
-        )
-        sentence += (
-            "leave rest out, or let the load end earlier (when a brake stops the cylinder is in "
-            "switches of a Motion)"
+            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
+            "the motion: leave rest out, or let the load end earlier (when a brake stops the "
+            "cylinder is in switches of a Motion)"
         )
         raise ParameterError("rest", rest, "None", sentence)
 
@@ -452,14 +407,17 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
         allowed = "continuous, as it is a prescribed speed"
         raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", allowed))
-    order = np.arange(1, speed.terms.shape[-1])
-    dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
-    terms = speed.terms[..., 1:] * order * dx_dt[..., None]
-    return speed._replace(
-        terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE)
-        if order.size
-        else np.zeros_like(speed.terms)
-    )
+    terms = np.zeros_like(speed.terms)
+    terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1])
+    terms *= _dx_dt(lengths)[..., None]
+    return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
+
+
+def _dx_dt(lengths: Floats) -> Floats:
+    """Return 2 divided by the lengths of pieces, the rate at which x runs from -1 to 1; 0 for those
+    that count as without length.
+    """
+    return np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > _INSTANT)
 
 
 def values_at_start(terms: Floats) -> Floats:
@@ -511,11 +469,8 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     count = max(len(f.terms) for f in functions)
     terms = max(f.terms.shape[-1] for f in functions)
     packed = np.zeros((count, kept, COL_COEFFICIENTS + len(functions) * terms))
-    lengths = ends - starts
     packed[..., COL_START] = starts
-    packed[..., COL_SCALE] = np.divide(
-        2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT
-    )
+    packed[..., COL_SCALE] = _dx_dt(ends - starts)
     for n, function in enumerate(functions):
         part = _restrict(function, rows, starts, ends)
         packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part

@@ -30,7 +30,6 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 
 from ..core import (
-    Feedback,
     Floats,
     NDArray,
     ParameterError,
@@ -215,15 +214,16 @@ class _Sampled:
         self.largest = max(self.largest, largest)
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
+        piece = Piece(
+            start=start,
+            stop=stop,
+            terms=np.zeros(TERMS),
+            largest=0.0,
+            error=largest,
+            so_far=so_far,
+        )
         if largest <= zero:
-            return Piece(
-                start=start,
-                stop=stop,
-                terms=np.zeros(TERMS),
-                largest=0.0,
-                error=largest,
-                so_far=so_far,
-            ), None
+            return piece, None
         # still 0 at the start and at the point _RISE after it: cut where it rises
         if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
             n = int(np.argmax(np.abs(values) > zero))
@@ -241,14 +241,7 @@ class _Sampled:
         # half is 0 where the motion has no duration: all points are then x = 0
         error = np.abs(polyval((t - middle) / (half or 1.0), terms) - values)
         if (error <= allowed).all():
-            return Piece(
-                start=start,
-                stop=stop,
-                terms=terms,
-                largest=largest,
-                error=float(error.max()),
-                so_far=so_far,
-            ), None
+            return piece._replace(terms=terms, largest=largest, error=float(error.max())), None
         return None, self._locate_jump(t, values, float(allowed[-1]))
 
     def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
@@ -309,7 +302,7 @@ def fit_callable(
     rtol: float,
     low: float,
     resolve: float | None = None,
-) -> tuple[Floats, Floats, float]:
+) -> Piecewise:
     """Fit a callable by piecewise polynomials, so that the integrator never calls it.
 
     name: name of the argument, for errors.
@@ -321,9 +314,7 @@ def fit_callable(
     low: smallest value allowed, in the unit of the values of the function.
     resolve: largest spacing of the samples, > 0, in T_ref; None, and at most: ``end`` divided by
     :data:`SAMPLES`.
-    Returns (starts of the k pieces in T_ref, (k,), ascending, the first 0; coefficients of powers
-    of x, ascending, (k, TERMS), dimensionless, where x runs from -1 to 1 over a piece, and the last
-    piece ends at ``end``; largest absolute difference seen between callable and fit, a float).
+    Returns the :class:`Piecewise`, which after ``end`` is constant.
     Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that
     requires more than :data:`MOST` samples; a callable of which :data:`MOST` values beside these
     are not enough, or that is not smooth within the shortest piece.  Exceptions of the callable
@@ -339,9 +330,14 @@ def fit_callable(
         samples = max(math.ceil(end / resolve), SAMPLES)
     sampled = _Sampled(name, function, end=end, rtol=rtol, low=low, samples=samples)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
-    starts = np.array([piece.start for piece in pieces])
+    starts = np.array([*(piece.start for piece in pieces), end])
     starts[0] = 0.0  # a jump there leaves one value before it
-    return starts, np.stack([piece.terms for piece in pieces]), max(piece.error for piece in pieces)
+    # a last piece, constant, with the value of the fit at x = 1
+    terms = np.zeros((starts.size, TERMS))
+    terms[:-1] = [piece.terms for piece in pieces]
+    terms[-1, 0] = terms[-2].sum()
+    error = max(piece.error for piece in pieces)
+    return Piecewise(starts[None], terms[None], error, starts.size)
 
 
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
@@ -508,9 +504,8 @@ def piecewise(
     A schedule is linear between its times and constant outside; a callable is fitted.
 
     name: name of the argument, for refusals.
-    function: None (0), a number, an array with one for each motion, a :class:`Schedule`, a callable
-    of t, or a :class:`Feedback` of one of these, whose gains are ignored; dimensionless, times in
-    T_ref, the unit of time (module docstring).
+    function: a number, an array with one for each motion, a :class:`Schedule`, or a callable of t;
+    dimensionless, times in T_ref, the unit of time (module docstring).
     end: last time, >= 0, in T_ref; ignored but for a callable.
     rtol: relative tolerance of the motion; a fit may differ from a callable by a tenth of it, times
     the largest magnitude so far.  Ignored but for a callable.
@@ -525,22 +520,13 @@ def piecewise(
     length for any motion are left out; the fit of a callable, which beyond ``end`` keeps its value
     there.
     """
-    if isinstance(function, Feedback):
-        function = function.value
     if callable(function):
         require_time_argument(name, function)
-        starts, terms, error = fit_callable(
-            name, function, end=end, rtol=rtol, low=low, resolve=resolve
-        )
-        # a last piece, constant, with the value of the fit at x = 1
-        after = np.zeros((1, terms.shape[1]))
-        after[0, 0] = terms[-1].sum()
-        starts = np.append(starts, end)[None]
-        return Piecewise(starts, np.concatenate([terms, after])[None], error, starts.size)
+        return fit_callable(name, function, end=end, rtol=rtol, low=low, resolve=resolve)
     if isinstance(function, Schedule):
         check_array(f"values of {name}", function.values, low=low)
         return _follow_corners(*np.atleast_2d(function.times, function.values))
-    values = check_array(name, 0.0 if function is None else function, low=low)
+    values = check_array(name, function, low=low)
     if values.ndim > 1:
         allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
         raise shape_error(name, values.shape, allowed)

@@ -44,7 +44,8 @@ from ..core import (
     shape_error,
     thread_count,
 )
-from .many_motions import Batch, Solution, solve_batch
+from .flow import FlowResult
+from .many_motions import Batch, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
 from .motion_datasets import RollResult
 from .motion_problem import MotionProblem, SolverOptions, make_problem
@@ -249,9 +250,8 @@ class Ensemble(RollResult):
                     start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values))
                 )
         index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
-        sense = (
-            self.V0 * self.omega0 + 0.0
-        )  # +0 from rest: friction moves the axis in the sense of the rotation
+        # +0 from rest: friction moves the axis in the sense of the rotation
+        sense = self.V0 * self.omega0 + 0.0
         return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
@@ -459,8 +459,7 @@ def ensemble(
     )
     scale = problem.roller.scale
     scene = problem.scene
-    several = scene.material_array is not None or np.ndim(scene.alpha) > 0
-    law = None if several else scene.rolling_law
+    law: Any = scene.rolling_law
     # a table of another program ends at a speed; those of the package do not
     ends = law is not None and law.coupled is not None and law.coupled.fastest < FASTEST
     if ends and "V" not in names:
@@ -475,19 +474,18 @@ def ensemble(
         progress="motions" if progress else None,
     )
     try:
-        solution = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
+        found, about = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
     except ParameterError as error:
         raise with_scales(error, scale) from error
-    if law is not None and ends:
+    if ends:
         kappa = np.reshape(inputs["kappa"], (-1, 1))
-        found = solution.motions.out[batch.rows.index("V")]
-        for V in (np.reshape(inputs["V0"], (-1, 1)), found):
+        for V in (np.reshape(inputs["V0"], (-1, 1)), found.out[batch.rows.index("V")]):
             refuse_beyond(law, kappa * np.abs(np.nan_to_num(V)))
     # None: not requested; 0: loads and works of free motions, which no kernel computes
     columns: dict[str, Any] = dict.fromkeys(FIELDS) | {
         name: np.zeros((count, times.size)) for name in names
     }
-    columns |= _in_units(batch, solution)
+    columns |= _in_units(batch, found) | about
     result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **columns)
     warn_of_speeds(problem.roller, start[0], result.V)
     return result
@@ -508,9 +506,9 @@ def _broadcast_inputs(
     """
     arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
     arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
-    counts = (1, 1) if problem.functions is None else problem.functions.counts
     # stand-ins with as many entries as the drive has motions, for the shapes alone
-    own = {name: np.zeros(n) for name, n in zip(("drive", "gains"), counts, strict=True) if n > 1}
+    counts = zip(("drive", "gains"), problem.functions.counts, strict=True)
+    own = {name: np.zeros(n) for name, n in counts if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
         raise shape_error("V0 or omega0", shape, "a number or a vector (n,)")
@@ -518,21 +516,19 @@ def _broadcast_inputs(
     return {name: broadcast_vector(array, (count,)) for name, array in arrays.items()}, count
 
 
-def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
-    """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its
+def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
+    """Convert the motions of an ensemble to the fields of :class:`Ensemble`, in the units of its
     roller.
 
     batch: :class:`Batch`, motions of the ensemble, of which problem, inputs, rows and the size of
         immobile are read.
-    solution: :class:`Solution`, dimensionless; of a cylinder its quantities are overwritten by
-        those in SI units.
+    found: :class:`.flow.FlowResult`, dimensionless; of a cylinder its quantities are overwritten
+        by those in SI units.
     Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are
-    views of those of ``solution``, NaN at times that a motion did not reach; onset_time, rest_time
+    views of those of ``found``, NaN at times that a motion did not reach; onset_time, rest_time
     (NaN where there is none), V0 and omega0, read-only, status (codes of :class:`MotionStatus`),
-    switches, steps, flow, (n,); drive_error, which stays dimensionless, flow_error, floats;
-    flow_problem, a text.
+    switches, (n,); drive_error, a float, which stays dimensionless.
     """
-    found = solution.motions
     scale = batch.problem.roller.scale
     shape = (batch.immobile.size,)
     rows = dict(zip(batch.rows, found.out, strict=True))
@@ -543,14 +539,10 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
         "omega0": batch.inputs["omega0"],
     }
     if scale.si:
-        for name, row in rows.items():
+        for name in rows:
             # a unit for each motion is a column; in place, as the rows may fill the memory
-            np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
+            rows[name] *= np.reshape(scale[name], (-1, 1))
         times = {name: value * scale[name] for name, value in times.items()}
     times = {name: np.broadcast_to(value, shape) for name, value in times.items()}
-    notes = {
-        "status": found.status,
-        "switches": found.switches,
-        "drive_error": batch.problem.drive_error,
-    }
-    return rows | times | notes | solution.about
+    notes = {"status": found.status, "switches": found.switches}
+    return rows | times | notes | {"drive_error": batch.problem.functions.error}

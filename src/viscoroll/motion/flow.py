@@ -145,8 +145,7 @@ def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     Returns the path in :func:`folder`; its name is a digest of the parameters and the octave.
     """
     numbers = np.array((*_numbers(parameters), octave), np.float64)
-    # the prefix tells names of files with a seal from those of earlier versions, which had none
-    return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
+    return folder() / (hashlib.sha256(numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
@@ -170,13 +169,10 @@ def _read(data: Any, parameters: tuple[Any, ...]) -> FlowMap:
 
     data: arrays by name.
     parameters: (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
-    Raises ValueError for one of another scene or with a table of another size, and KeyError for one
-    that lacks an array.
+    Raises ValueError for one of another scene, and KeyError for one that lacks an array.
     """
     if not np.array_equal(data["parameters"], _numbers(parameters)):
         raise ValueError("it was made for other parameters")
-    if data["table"].shape != (flow_layout.SIZE,):
-        raise ValueError("the size of its table is wrong")
     return FlowMap(
         parameters=parameters,
         first=int(data["first"]),
@@ -237,9 +233,8 @@ def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
     """
     parameters = (scene.in_own_time()[0], scene.kappa, scene.mu, scene.j)
     octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVE_STEP) * _OCTAVE_STEP
-    return parameters, min(
-        max(octave, flow_layout.OCTAVE_RANGE[0]), flow_layout.OCTAVE_RANGE[1]
-    )  # motions beyond find nothing there
+    # motions beyond these find nothing there
+    return parameters, int(np.clip(octave, *flow_layout.OCTAVE_RANGE))
 
 
 def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:
@@ -302,44 +297,40 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
         errors=(math.inf,) * 3,
         problem="",
     )
-    problem = fill_tables(new_map, threads)
-    if problem:
-        return replace(new_map, problem=problem)
+    try:
+        fill_tables(new_map, threads)
+    except NoFlowMap as reason:
+        return replace(new_map, problem=str(reason))
     return replace(new_map, errors=_measure_errors(new_map, octave, threads))
 
 
-def fill_tables(new_map: Any, threads: int | None) -> str:
+def fill_tables(new_map: FlowMap, threads: int | None) -> None:
     """Fill the tables of a new flow map.
 
     new_map : the :class:`.flow.FlowMap`, whose ``table`` is written.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
     available.
-    Returns "", or the reason why the scene has no map, a sentence; the table is then incomplete.
-    Of an elastic scene, which never slows down, nothing is written.
+    Raises NoFlowMap with the reason why the scene has no map, a sentence; the table is then
+    incomplete.  Of an elastic scene, which never slows down, nothing is written.
     """
     if new_map.slow_rate == 0.0:
-        return "an elastic cylinder never slows down"
+        raise NoFlowMap("an elastic cylinder never slows down")
     parts = flow_layout.views(new_map.table)
-    first = new_map.first
     problem = FlowProblem(
         new_map.parameters, law_table(new_map.parameters[0]).record, new_map.slow_rate, threads
     )
-    try:
-        with np.errstate(all="ignore"):  # what is not finite is refused
-            _fill_full_slip(problem, parts)
-            slow = fill_manifold(problem, parts)
-            for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
-                fill_layers(
-                    problem,
-                    sign,
-                    first=first,
-                    slow=slow,
-                    asymptote=parts.asymptote[family],
-                    layer=parts.layer[family],
-                )
-    except NoFlowMap as reason:
-        return str(reason)
-    return ""
+    with np.errstate(all="ignore"):  # what is not finite is refused
+        _fill_full_slip(problem, parts)
+        slow = fill_manifold(problem, parts)
+        for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
+            fill_layers(
+                problem,
+                sign,
+                first=new_map.first,
+                slow=slow,
+                asymptote=parts.asymptote[family],
+                layer=parts.layer[family],
+            )
 
 
 def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
@@ -358,7 +349,7 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     V = SPEEDS.x / kappa
     # below the lowest speed V' is +-mu: T and X from rest to there are V/mu and V^2/(2 mu)
     least = 2.0**flow_layout.LOW / kappa
-    state = problem.contact_states(V, np.zeros(V.shape))
+    state = problem.contact_states(V)
     # |omega - V| at the onset of partial slip
     limit = state[DELTA_STAR] * V
     for n, sign in enumerate((1.0, -1.0)):

@@ -215,11 +215,12 @@ class FlowProblem(NamedTuple):
     slow_rate: float
     threads: int | None
 
-    def contact_states(self, V: Floats, delta: Floats) -> Floats:
+    def contact_states(self, V: Floats, delta: Any = 0.0) -> Floats:
         """Return critical creepage, moment, traction and its slope at speeds and creepages inside
         the stick zone.
 
-        V, delta : speeds, > 0, and creepages, |delta| < delta_star, dimensionless, of one shape.
+        V, delta : speeds, > 0, and creepages, |delta| < delta_star, dimensionless, of one shape or
+        one for all.
         Returns (4, ...), dimensionless, in this order, each in the shape of V: delta_star, M, Q
         with the sign of delta (0 at delta = 0), dQ/d delta at fixed V; :mod:`.flow_layout`
         names the indices.
@@ -228,7 +229,7 @@ class FlowProblem(NamedTuple):
         out = np.empty((4, V.size))
         states(
             np.ascontiguousarray(V).ravel(),
-            np.ascontiguousarray(delta).ravel(),
+            np.ascontiguousarray(np.broadcast_to(delta, V.shape)).ravel(),
             kappa,
             mu,
             self.law,
@@ -399,12 +400,7 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     # a step is the time from V to V/2 with M/V as in the middle: (1 + j) V' = -M in time gamma t
     while kappa * V[0] > _SLOW_LOG_ORIGIN:
         between = 0.75 * V
-        step = (
-            math.log(2.0)
-            * (1.0 + j)
-            * between
-            / problem.contact_states(between, np.zeros(1))[MOMENT]
-        )
+        step = math.log(2.0) * (1.0 + j) * between / problem.contact_states(between)[MOMENT]
         (V,), (delta,) = problem.integrate(V, delta, gamma=gamma, t=step, reason=FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
             raise NoFlowMap(OUT_OF_RANGE)
@@ -537,11 +533,7 @@ def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     V : speeds, > 0, dimensionless, of any shape.
     Returns the rates, > 0, dimensionless, in the shape of V.
     """
-    return (
-        (1.0 + 1.0 / problem.parameters[3])
-        * problem.contact_states(V, np.zeros(V.shape))[STIFFNESS]
-        / V
-    )
+    return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V)[STIFFNESS] / V
 
 
 def _state_before_onset(
@@ -560,7 +552,7 @@ def _state_before_onset(
     Returns (V, delta), (n,) each, dimensionless, to first order in that time.
     """
     _, _, mu, j = problem.parameters
-    state = problem.contact_states(V, np.zeros(V.shape))
+    state = problem.contact_states(V)
     push = sign * mu
     half_moment = 0.5 * state[MOMENT]
     tau = _LEAD * gamma

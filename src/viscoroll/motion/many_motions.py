@@ -67,22 +67,9 @@ class Batch(NamedTuple):
     progress: str | None
 
 
-class Solution(NamedTuple):
-    """Solved motions, dimensionless, and their source.
-
-    motions : :class:`.flow.FlowResult`: quantities (rows, n, times), in the order of
-    :attr:`Batch.rows`; status, onset and rest times in T_ref, number of switches, (n,) each.
-    about : "steps", integration steps of each motion, (n,) int, 0 of motions that were not
-    integrated; "flow", whether a motion was looked up in the flow map, (n,) bool; "flow_error", a
-    float, the stated error of the map, NaN if none was tried, infinite if the scene has none;
-    "flow_problem", why the scene has no map, or "".
-    """
-
-    motions: FlowResult
-    about: dict[str, Any]
-
-
-def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
+def solve_batch(
+    batch: Batch, method: str, speed: float | None
+) -> tuple[FlowResult, dict[str, Any]]:
     """Solve motions: look up those that the flow map of their scene contains, and integrate all
     others.
 
@@ -105,8 +92,11 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady
     motions, or with bodies that differ (covers included); where a map is tried, also for a
     ``speed`` above 1e100; for a number of threads that is no whole number >= 1.
-    Returns the :class:`Solution`; a motion that could not be integrated to its end has a status
-    above RESTED, and NaN at the times that it did not reach.
+    Returns (the motions, a :class:`.flow.FlowResult`, times in T_ref; name -> value of
+    "flow_error", the stated error of the flow map, NaN where none was tried, "flow_problem", why
+    the scene has none, "flow", whether each motion is from the map, (n,), and "steps", steps of
+    integration, (n,)).  A motion that could not be integrated to its end has a status above RESTED,
+    and NaN at the times that it did not reach.
     """
     scene = batch.problem.scene
     immobile = batch.immobile
@@ -132,7 +122,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
         found.status[immobile] = MotionStatus.CAUGHT
         found.switches[immobile] = 0
     about["steps"] = _integrate_others(found, batch)
-    return Solution(found, about)
+    return found, about
 
 
 def _solve_by_flow_map(
@@ -227,7 +217,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
         )
         arguments = (
             (*law(alpha, left), *others),
-            problem.kernel_drive(left),
+            problem.functions.for_kernel(left),
             batch.times,
             problem.limits,
             rows,
@@ -250,8 +240,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
         if problem.unsteady and np.ndim(problem.scene.alpha)
         else _BLOCK
     )
-    if problem.functions is not None:
-        block = problem.functions.block(block)
+    block = problem.functions.block(block)
     run_blocks(work, steps.size, block, threads=batch.threads, progress=batch.progress)
     return steps
 
@@ -260,7 +249,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
     """Return the function that gives the kernel's law of some motions.
 
     scene: :class:`Parameters` of the motions, of one material or of several; ``alpha``,
-    ``material``, ``material_array`` and ``table`` are read.
+    ``material``, ``material_array`` and ``rolling_law`` are read.
     unsteady: whether the added mass acts.  The function must then be called for one motion at a
     time if the materials differ, since the law with N belongs to one material.
     Returns a function of the alphas of the motions, (k,), and of their indices, (k,).  It returns
@@ -268,11 +257,10 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
     cylinder may take unequal parts of M, which is True for any list of two bodies).  Where all
     motions have one material the function ignores its arguments.
     """
-    several: Any = scene.material_array
-    if scene.tabulated or (several is None and not np.ndim(scene.alpha)):
-        table: Any = scene.rolling_law
+    if (table := scene.rolling_law) is not None:
         law = (table.unsteady_record if unsteady else table.record), table.unlike
         return lambda alpha, index: law
+    several: Any = scene.material_array
 
     def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
         """Return the law of some motions as the kernel takes it.
@@ -283,16 +271,13 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
         each motion has only an alpha.
         Returns (record of the law or laws; whether the bodies may take unequal parts of M).
         """
-        if several is not None:
-            # one material for all motions is index 0
-            index = np.minimum(index, len(several) - 1)
-        if unsteady:
-            material: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]
-            return law_table(
-                material.item() if several is None else material
-            ).unsteady_record, False
         if several is None:
-            return record_of_alphas(alpha), False
+            one = law_table(alpha.item()).unsteady_record if unsteady else record_of_alphas(alpha)
+            return one, False
+        # one material for all motions is index 0
+        index = np.minimum(index, len(several) - 1)
+        if unsteady:
+            return law_table(scene.material[index.item()]).unsteady_record, False  # type: ignore[index]
         return record_of_materials(several, index), isinstance(several, Bodies)
 
     return make

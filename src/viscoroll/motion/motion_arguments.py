@@ -4,8 +4,6 @@ gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 
 from __future__ import annotations
 
-import math
-import sys
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,18 +62,6 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
         found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at rows {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
     return times
-
-
-def refuse_end(end: float, T: float) -> None:
-    """Raise ParameterError where the last output time becomes infinite when it is divided by T_ref.
-
-    end: last output time, finite, >= 0, in s, or of a scene in T_ref.
-    T: T_ref, the unit of time of the dimensionless motion, > 0, s; 1 for a scene.
-    Returns None for any other time.
-    """
-    if end / T == math.inf:
-        allowed = f"less than {sys.float_info.max * min(T, 1.0):.3g}, since it is divided by T_ref"
-        raise ParameterError("t", end, allowed)
 
 
 def require_single(**arguments: Any) -> None:
@@ -233,25 +219,24 @@ class Drive(NamedTuple):
         return {name: value for name, value in self._asdict().items() if value is not None}
 
     @property
-    def numbers(self) -> dict[str, Floats]:
-        """Return name -> array, () or (n,), of each load or speed that is given as a number or as
-        one for each motion.
-
-        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the
-        drag are among them.  Schedules, callables and feedbacks are left out.  Raises
-        ParameterError for what is not numeric or not finite.
-        """
-        others = Feedback | Schedule
-        return {
-            n: check_array(n, x)
-            for n, x in self.given.items()
-            if not (callable(x) or isinstance(x, others))
-        }
+    def values(self) -> dict[str, Any]:
+        """What is given, as :attr:`given`, without gains: of a feedback its value."""
+        return {n: x.value if isinstance(x, Feedback) else x for n, x in self.given.items()}
 
     @property
-    def has_callable(self) -> bool:
-        """Whether one of them is a function of t, by itself or in a feedback."""
-        return any(callable(x.value if isinstance(x, Feedback) else x) for x in self.given.values())
+    def numbers(self) -> dict[str, Floats]:
+        """Return name -> array, () or (n,), of each load or speed that is given as a number or as
+        one for each motion, also in a feedback.
+
+        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the
+        drag are among them.  Schedules and callables are left out.  Raises ParameterError for what
+        is not numeric or not finite.
+        """
+        return {
+            n: check_array(n, x)
+            for n, x in self.values.items()
+            if not (callable(x) or isinstance(x, Schedule))
+        }
 
     @property
     def acts(self) -> bool:
@@ -276,9 +261,12 @@ class Drive(NamedTuple):
         is.
         Raises ParameterError for a load that is no number and no function of time, or not finite.
         """
-        loads = {name: value for name, value in self.given.items() if name not in ("omega", "V")}
         return self._replace(
-            **{name: None for name, value in loads.items() if _is_zero(name, value)}
+            **{
+                name: None
+                for name, value in self.given.items()
+                if name not in ("omega", "V") and _is_zero(name, value)
+            }
         )
 
     def over(self, scale: Scale) -> Drive:
@@ -316,22 +304,9 @@ def _is_zero(name: str, value: Any) -> bool:
     )
 
 
-class PlainArguments(NamedTuple):
-    """Start speeds and drive as plain numbers, without the units and labels that they carried, and
-    these labels.
-
-    start : V0 and omega0 in the units of the roller.
-    drive : loads and prescribed speeds in the units of the roller.
-    labels : labels of arrays of xarray and pandas, by which results are labelled again; None
-    without.
-    """
-
-    start: tuple[Any, Any]
-    drive: Drive
-    labels: Labels | None
-
-
-def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainArguments:
+def strip_units(
+    start: tuple[Any, Any], drive: Drive, units: HasUnits
+) -> tuple[tuple[Any, Any], Drive, Labels | None]:
     """Return start speeds and drive in the units of a roller, as plain numbers, and the labels that
     they had.
 
@@ -341,8 +316,9 @@ def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainA
     Raises ParameterError for a unit of another dimension, for arrays with labels beside arrays
     without, or with other labels, and, where any argument has a unit or labels, for a Feedback that
     is neither force nor torque.
-    Returns :class:`PlainArguments`; what had neither a unit nor labels is unchanged, and callables
-    are.  Numbers are not checked otherwise.
+    Returns (V0 and omega0; loads and prescribed speeds; labels of arrays of xarray and pandas, by
+    which results are labelled again, None without), in the units of the roller.  What had neither a
+    unit nor labels is unchanged, and callables are.  Numbers are not checked otherwise.
     """
     plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
-    return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)
+    return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels

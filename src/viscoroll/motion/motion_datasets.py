@@ -133,23 +133,24 @@ class RollResult(Result):
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
 
 
-class _Flags(NamedTuple):
-    """Attributes of a column of codes: its long_name, the first code, and the meanings of all
-    codes.
-    """
+def _flags(long_name: str, first: int, meanings: str) -> dict[str, Any]:
+    """Return the attributes of a column of codes, as CF has them.
 
-    long_name: str
-    first: int
-    meanings: str
+    long_name: its long_name.
+    first: the first code; the others follow it.
+    meanings: meanings of all codes, a word each.
+    """
+    values = np.arange(first, first + len(meanings.split()), dtype=np.int8)
+    return {"long_name": long_name, "flag_values": values, "flag_meanings": meanings}
 
 
 #: Columns of codes.
 _FLAGS = {
-    "regime": _Flags("regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
-    "status": _Flags(
+    "regime": _flags("regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
+    "status": _flags(
         "how the motion ended", 0, " ".join(status.name.lower() for status in MotionStatus)
     ),
-    "flow": _Flags("source of the motion", 0, "integrated flow_map"),
+    "flow": _flags("source of the motion", 0, "integrated flow_map"),
 }
 
 
@@ -164,11 +165,7 @@ def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
     flag_values (int8, (codes,)) and flag_meanings, one word for each code in their order, and no
     units.
     """
-    if name not in _FLAGS:
-        return dict(attributes(name, si))
-    long_name, first, meanings = _FLAGS[name]
-    values = np.arange(first, first + len(meanings.split()), dtype=np.int8)
-    return {"long_name": long_name, "flag_values": values, "flag_meanings": meanings}
+    return dict(_FLAGS.get(name) or attributes(name, si))
 
 
 def provenance(title: str) -> dict[str, str]:
@@ -403,13 +400,14 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
     divided by T_ref; of a series in creep form PREFIXcreep_strengths, divided by the long-time
     compliance, and PREFIXcreep_times.
     """
-    form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
+    form, total, strengths, times = (
+        ("creep", "compliance", series.J, series.T)
+        if series.by_creep
+        else ("relaxation", "modulus", series.E, series.tau)
+    )
     parts = {
-        "strengths": (
-            series.J if series.by_creep else series.E,
-            f"strengths of {form} divided by the long-time {total}",
-        ),
-        "times": (series.T if series.by_creep else series.tau, f"times of {form} divided by T_ref"),
+        "strengths": (strengths, f"strengths of {form} divided by the long-time {total}"),
+        "times": (times, f"times of {form} divided by T_ref"),
     }
     return {
         f"{prefix}{form}_{name}": (

@@ -8,6 +8,7 @@ T_ref is the unit of time of dimensionless motions: T_epsilon of a material that
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +25,6 @@ from ..contact_mechanics import (
 from ..contact_mechanics.contact import contact
 from ..core import (
     Floats,
-    HasUnits,
     Integers,
     MotionStatus,
     NDArray,
@@ -40,12 +40,12 @@ from ..core import (
 )
 from ..laws.law_table import law_table
 from .drive_functions import (
+    UNDRIVEN,
     DriveFunctions,
     DrivenStart,
     KernelDrive,
     prepare_drive,
     refuse_rest,
-    undriven,
 )
 from .motion_arguments import (
     LOSSES,
@@ -53,7 +53,6 @@ from .motion_arguments import (
     STATES,
     Drive,
     controls,
-    refuse_end,
     require_single,
     with_scales,
 )
@@ -101,8 +100,7 @@ class MotionProblem(NamedTuple):
     the caller, and its dimensionless :class:`Parameters`.
     drive : :class:`Drive`, loads and prescribed speeds as given, in the units of the roller; a load
     that is 0 at all times is None.
-    functions : the same as dimensionless functions of time, :class:`DriveFunctions`; None for free
-    motions.
+    functions : the same as dimensionless functions of time, :class:`DriveFunctions`.
     V0, omega0 : start speeds, numbers or (n,), reduced by the speed that a start after a standstill
     costs.
     immobile : whether a motion is too slow to leave the indentation of a standstill: (n,), or one
@@ -117,7 +115,7 @@ class MotionProblem(NamedTuple):
     roller: Roller
     scene: Parameters
     drive: Drive
-    functions: DriveFunctions | None
+    functions: DriveFunctions
     V0: Any
     omega0: Any
     immobile: Any
@@ -125,22 +123,6 @@ class MotionProblem(NamedTuple):
     limits: tuple[float, float, int]
     unsteady: bool
     driven: bool
-
-    @property
-    def drive_error(self) -> float:
-        """Largest difference seen between a callable and its fit, dimensionless."""
-        return 0.0 if self.functions is None else self.functions.error
-
-    def kernel_drive(self, index: Any = slice(None)) -> KernelDrive:
-        """Return the drive of some motions as the kernels take it,
-        :data:`.drive_functions.KernelDrive`.
-
-        index : index of numpy, a slice or a vector of integers, that selects the motions; default:
-        all.
-        Returns the tuple of :meth:`.drive_functions.DriveFunctions.for_kernel`, of free motions
-        that of :func:`.drive_functions.undriven`.
-        """
-        return undriven() if self.functions is None else self.functions.for_kernel(index)
 
 
 def make_problem(
@@ -190,10 +172,11 @@ def make_problem(
         raise ParameterError("rest", rest, "None", sentence)
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     driven = unsteady or (acts and drive.acts)
+    if (last := float(end) / scale["t"]) == math.inf:
+        longest = sys.float_info.max * min(scale["t"], 1.0)
+        raise ParameterError("t", end, f"less than {longest:.3g}")
     try:
         limits = controls(rtol, rest, max_steps, scale)
-        last = float(end) / scale["t"]
-        refuse_end(float(end), scale["t"])
         V0 = make_dimensionless("V0", start[0], scale)
         omega0 = make_dimensionless("omega0", start[1], scale)
         spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
@@ -201,20 +184,16 @@ def make_problem(
             drive.over(scale), V0, omega0=omega0, end=last, rtol=rtol, resolve=spacing
         )
         functions = prepared.functions
-        if functions is not None:  # a step ends at every corner
-            # rtol and the threshold of rest stay; the third is the step limit
-            limits = (*limits[:2], limits[2] + functions.corners)
+        # a step ends at every corner; rtol and the threshold of rest stay
+        limits = (*limits[:2], limits[2] + functions.corners)
         if rest is not None:
             refuse_rest(rest, functions)
-        V0, omega0, immobile = _apply_standstill(
-            prepared, scene, _standstill_time(rested, scale) / scale["t"]
-        )
+        V0, omega0, immobile = _apply_standstill(prepared, scene, rested, scale)
     except ParameterError as error:
         raise with_scales(error, scale) from error
-    many = 1 if functions is None else max(functions.counts)
-    if single and many > 1:
-        allowed = "the drive of one motion: for many use ensemble"
-        raise described_error("drive", f"has values for {many} motions", allowed)
+    if single and functions.counts != (1, 1):
+        found = f"has values for {max(functions.counts)} motions"
+        raise described_error("drive", found, "the drive of one motion: for many use ensemble")
     return MotionProblem(
         roller=roller,
         scene=scene,
@@ -235,13 +214,13 @@ def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
 
     resolve: the argument of the caller, not None: one number, in T_ref of a scene, in s or with a
     unit of time of a cylinder.
-    drive: :class:`Drive` of the motions, of which only :attr:`Drive.has_callable` is read.
+    drive: :class:`Drive` of the motions, of which :attr:`Drive.values` is read.
     scale: :class:`Scale` of the roller, which converts s to T_ref.
     Returns a float > 0.
     Raises ParameterError unless ``resolve`` is one finite number above 0 without a unit of another
     dimension, and the drive has a callable.
     """
-    if not drive.has_callable:
+    if not any(map(callable, drive.values.values())):
         sentence = (
             f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
             "leave it out"
@@ -271,59 +250,53 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     return True
 
 
-def _standstill_time(rested: Any, units: HasUnits) -> float:
-    """Return the time of the standstill before the start, in the unit of the roller: 0 without one,
-    inf for a long one.
-
-    rested: argument of the caller: False (none), True (a long one), or a finite time >= 0 in the
-    unit of the roller.
-    units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
-    Raises ParameterError for what is neither a truth value nor one finite number >= 0, and for one
-    with a unit of another dimension.
-    """
-    if isinstance(rested, bool | np.bool_):
-        return math.inf if rested else 0.0
-    time = check_array("rested", rested, unit=units, low=0.0)
-    if time.ndim:
-        raise ParameterError("rested", rested, "one time >= 0, or True")
-    return float(time)
-
-
-def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
+def _apply_standstill(
+    start: DrivenStart, scene: Parameters, rested: Any, scale: Scale
+) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
     start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, of which only
     ``prescribed`` is read.
     scene: :class:`Parameters`, dimensionless, of the roller, with gamma.
-    rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
+    rested: argument of the caller: False or 0 (no standstill), True (a long one), or its time, in
+    the unit of the roller.
+    scale: :class:`Scale` of the roller.
     Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.
-    If ``rested`` is 0, the speeds are returned as they are, with False.  Else V0 and omega0 of each
-    motion are multiplied by the same factor in [0, 1], and the third entry has the common shape of
-    V0 and the scene's arrays.  It is True where this takes more than 45 % of V
+    Without a standstill the speeds are returned as they are, with False.  Else V0 and omega0 of
+    each motion are multiplied by the same factor in [0, 1], and the third entry has the common
+    shape of V0 and the scene's arrays.  It is True where this takes more than 45 % of V
     (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.
-    Raises ParameterError if ``rested`` is not 0, and a speed is prescribed, any motion starts in
-    full slip or from V0 = omega0 = 0, or the roller has a cover: the cost is then not known.
+    Raises ParameterError for ``rested`` that is neither a truth value nor one finite number >= 0,
+    and for one with a unit of another dimension; after a standstill if a speed is prescribed, any
+    motion starts in full slip or from V0 = omega0 = 0, or the roller has a cover: the cost is then
+    not known.
     """
-    if rested == 0.0:
+    if isinstance(rested, bool | np.bool_):
+        time: Any = math.inf if rested else 0.0
+    else:
+        time = check_array("rested", rested, unit=scale, low=0.0)
+        if time.ndim:
+            raise ParameterError("rested", rested, "one time >= 0, or True")
+    if time == 0.0:
         return start.V0, start.omega0, False
     refuse_cover(
         scene, "the energy loss of a start after a standstill is not available: leave rested out"
     )
     V = np.asarray(start.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
-    prescribed = start.functions is not None and start.functions.prescribed
-    still = np.any((V == 0.0) & (np.asarray(start.omega0) == 0.0))
-    if prescribed or still or np.any(np.abs(start.omega0 - V) > limit):
-        why = "a speed is prescribed" if prescribed else "it starts in full slip"
-        why = (
-            "it starts at V0 = omega0 = 0 and must yet break away"
-            if still and not prescribed
-            else why
-        )
+    why = (
+        "a speed is prescribed"
+        if start.functions.prescribed
+        else "it starts at V0 = omega0 = 0 and must yet break away"
+        if np.any((V == 0.0) & (np.asarray(start.omega0) == 0.0))
+        else "it starts in full slip" * bool(np.any(np.abs(start.omega0 - V) > limit))
+    )
+    if why:
         sentence = f"rested is given, but {why}: leave it out, the loss of the start is not known"
         raise ParameterError("rested", rested, "left out", sentence)
     # part of V; V = 0 with omega0 = 0 was refused above, and without a limit any other omega0 slips
-    lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
+    lost = FreeRolling.of_scene(scene, V).start(time / scale["t"]).speed
+    lost = lost / np.where(V == 0.0, 1.0, np.abs(V))
     return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS
 
 
@@ -391,8 +364,7 @@ def integrate_single(
             np.nan,
             np.nan,
         ]
-    law = scene.rolling_law
-    assert law is not None
+    law: Any = scene.rolling_law
     numbers = scene.kappa, scene.mu, scene.gamma, scene.j, problem.V0, problem.omega0
     arrays = np.array(numbers, float).reshape(-1, 1)
     arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
@@ -400,7 +372,7 @@ def integrate_single(
     out, info = integrate(
         1,
         batch,
-        drive=problem.kernel_drive(),
+        drive=problem.functions.for_kernel(),
         times=times,
         limits=problem.limits,
         rows=_ALL_ROWS,
@@ -452,7 +424,12 @@ def integrate_motions(
         parts = (array[start:stop] if array.size > 1 else array for array in arrays)
         batch = law.record, law.unlike, *parts
         blocks[start] = integrate(
-            stop - start, batch, drive=undriven(), times=t, limits=_MAP_LIMITS, rows=_FREE_ROWS
+            stop - start,
+            batch,
+            drive=UNDRIVEN.for_kernel(),
+            times=t,
+            limits=_MAP_LIMITS,
+            rows=_FREE_ROWS,
         )
 
     run_blocks(work, count, _BLOCK, threads=threads)

@@ -442,7 +442,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
         status=MotionStatus(int(status)),
         steps=int(steps),
         reversals=noted[noted[:, 1] < 0.0, 0] * T,
-        drive_error=problem.drive_error,
+        drive_error=problem.functions.error,
         _problem=problem,
     )
 

@@ -16,13 +16,13 @@ quantile of blocks lies between two values that are known to 2^-8 each
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from functools import partial
 from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
 
 from ..core import Dataset, Floats, Integers, MotionStatus, NDArray, ParameterError
+from .motion_arguments import ROWS
 from .motion_datasets import column_attributes, provenance
 
 # --- Counts and moments of one quantity, which merge with those of further values ---
@@ -180,20 +180,45 @@ _DRAWN = ("V", "omega", "x", "angle")
 class Quantity(NamedTuple):
     """A quantity that summaries describe.
 
-    fields : names of the fields of an ensemble that it needs.
-    values : function (motions, index of the output time) -> its values, (n,), in the unit of the
-    roller or, of a part, dimensionless; the index is ignored without ``over_time``.
+    fields : names of the fields of an ensemble that it needs; none: it is the field ``column``,
+    which has one value for each motion.
+    of : function of these fields at an output time, (n,) each, in the unit of the roller -> its
+    values, (n,), in that unit.  Of a part: a function (V0^2 + j omega0^2; j; fields), all
+    dimensionless.
     column : name of the field whose long_name and unit it has; "" for a part of the kinetic energy
     at the start.
     part : words on which part that is; "" else.
-    over_time : whether it has a value at each output time.
     """
 
-    fields: tuple[str, ...]
-    values: Callable[[Any, int], NDArray]
+    fields: tuple[str, ...] = ()
+    of: Callable[..., NDArray] = np.positive
     column: str = ""
     part: str = ""
-    over_time: bool = True
+
+    @property
+    def over_time(self) -> bool:
+        """Whether it has a value at each output time."""
+        return bool(self.fields)
+
+    def values(self, motions: Any, k: int) -> NDArray:
+        """Return its values at an output time, (n,), in the unit of the roller, of a part
+        dimensionless; NaN for motions that did not reach that time, and parts of motions from rest.
+
+        motions: an :class:`Ensemble`, or a dataset of one for what is no part, with the fields; of
+            a part V0, omega0 (after the cost of a standstill), scale and scene.j are read too.
+        k: index of the output time, ignored without ``over_time``.
+        """
+        if not self.fields:
+            return getattr(motions, self.column)
+        found = [getattr(motions, name)[:, k] for name in self.fields]
+        if not self.part:
+            return self.of(*found)
+        scale = motions.scale
+        j = motions.scene.j
+        # twice the kinetic energy at the start divided by m (R/T_ref)^2
+        whole = (motions.V0 / scale["V"]) ** 2 + j * (motions.omega0 / scale["omega"]) ** 2
+        found = [values / scale[name] for name, values in zip(self.fields, found, strict=True)]
+        return self.of(np.where(whole > 0.0, whole, np.nan), j, *found)
 
     def about(self, si: bool) -> dict[str, Any]:
         """Return the attributes long_name and units of the quantity, further ones of a field, as a
@@ -207,115 +232,28 @@ class Quantity(NamedTuple):
         return column_attributes(self.column, si)
 
 
-def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
-    """Return a field at an output time, made dimensionless, (n,); NaN for motions that did not
-    reach it.
-
-    motions: an :class:`Ensemble`, of which the field and scale are read.
-    name, k: name of a field over (motion, t) that it has, and index of the output time.
-    """
-    return getattr(motions, name)[:, k] / motions.scale[name]
+def _loss(whole: NDArray, j: Any, loss: NDArray) -> NDArray:
+    """Return a loss divided by the kinetic energy at the start, ``whole`` being twice that."""
+    return 2.0 * loss / whole
 
 
-def _start_energy(motions: Any) -> NDArray:
-    """Return V0^2 + j omega0^2, twice the kinetic energy at the start divided by m (R/T_ref)^2,
-    (n,); NaN for motions from rest.  T_ref is the unit of time of dimensionless motions.
-
-    motions: an :class:`Ensemble`, of which V0, omega0, scale and scene.j are read; its start speeds
-        are those after the cost of a standstill.
-    """
-    V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
-    energy = V**2 + motions.scene.j * omega**2
-    return np.where(energy > 0.0, energy, np.nan)
-
-
-def _translation(motions: Any, k: int) -> NDArray:
-    """Return V(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the translational energy at output
-    time t_k divided by the kinetic energy at the start, above 1 perhaps under a drive; NaN for
-    motions from rest, and for those that did not reach t_k.
-
-    motions: an :class:`Ensemble` with the field V; V0, omega0 (after the cost of a standstill),
-        scale and scene.j are read too.
-    k: index of the output time.
-    """
-    return _dimensionless(motions, "V", k) ** 2 / _start_energy(motions)
-
-
-def _rotation(motions: Any, k: int) -> NDArray:
-    """Return j omega(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the rotational energy at
-    output time t_k divided by the kinetic energy at the start, above 1 perhaps under a drive; NaN
-    for motions from rest, and for those that did not reach t_k.
-
-    motions: an :class:`Ensemble` with the field omega; V0, omega0, scale and scene.j are read too.
-    k: index of the output time.
-    """
-    return motions.scene.j * _dimensionless(motions, "omega", k) ** 2 / _start_energy(motions)
-
-
-def _loss(name: str, motions: Any, k: int) -> NDArray:
-    """Return a loss up to an output time divided by the kinetic energy at the start, dimensionless,
-    (n,); NaN for motions from rest, and for those that did not reach the time.
-
-    name, k: name of the field, "slip_loss" or "rolling_loss", in m (R/T_ref)^2 or J/m; index of the
-    output time.
-    motions: an :class:`Ensemble` with that field; V0, omega0, scale and scene.j are read too.
-    """
-    return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
-
-
-def _field(name: str, motions: Any, k: int) -> NDArray:
-    """Return the field ``name`` of ``motions`` at output time ``k``, (n,), in its unit; NaN where
-    not reached.
-    """
-    return getattr(motions, name)[:, k]
-
-
-#: Fields of an ensemble that are summarised as they are.
-_FIELDS = (
-    "V",
-    "omega",
-    "x",
-    "angle",
-    "delta",
-    "force",
-    "torque",
-    "work_force",
-    "work_torque",
-    "brake_loss",
-    "slip_loss",
-    "rolling_loss",
-)
 #: All quantities by name.
 QUANTITIES = {
-    **{
-        name: Quantity(fields=(name,), values=partial(_field, name), column=name)
-        for name in _FIELDS
-    },
-    "distance": Quantity(
-        fields=("x",), values=lambda motions, k: np.abs(motions.x[:, k]), column="x"
+    **{name: Quantity((name,), column=name) for name in ROWS if name != "regime"},
+    "distance": Quantity(("x",), np.abs, column="x"),
+    "translation": Quantity(("V",), lambda whole, j, V: V**2 / whole, part="in translation"),
+    "rotation": Quantity(
+        ("omega",), lambda whole, j, omega: j * omega**2 / whole, part="in rotation"
     ),
-    "translation": Quantity(fields=("V",), values=_translation, part="in translation"),
-    "rotation": Quantity(fields=("omega",), values=_rotation, part="in rotation"),
     "lost": Quantity(
-        fields=("V", "omega"),
-        values=lambda motions, k: 1.0 - _translation(motions, k) - _rotation(motions, k),
+        ("V", "omega"),
+        lambda whole, j, V, omega: 1.0 - V**2 / whole - j * omega**2 / whole,
         part="lost to slip and rolling resistance",
     ),
-    "lost_to_slip": Quantity(
-        fields=("slip_loss",), values=partial(_loss, "slip_loss"), part="lost in slip"
-    ),
-    "lost_to_rolling": Quantity(
-        fields=("rolling_loss",), values=partial(_loss, "rolling_loss"), part="lost in rolling"
-    ),
-    "onset_time": Quantity(
-        fields=(),
-        values=lambda motions, k: motions.onset_time,
-        column="onset_time",
-        over_time=False,
-    ),
-    "rest_time": Quantity(
-        fields=(), values=lambda motions, k: motions.rest_time, column="rest_time", over_time=False
-    ),
+    "lost_to_slip": Quantity(("slip_loss",), _loss, part="lost in slip"),
+    "lost_to_rolling": Quantity(("rolling_loss",), _loss, part="lost in rolling"),
+    "onset_time": Quantity(column="onset_time"),
+    "rest_time": Quantity(column="rest_time"),
 }
 
 
@@ -503,10 +441,9 @@ def _variables(
     about = QUANTITIES[name].about(si)
     times = ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))
-    moments = np.array(
+    counted, mean, spread, low, high = np.array(
         [[one.count, one.mean, one.spread, one.low, one.high] for one in histograms]
     ).T
-    counted, mean, spread, low, high = moments
     below, above = edges_of(bins)
     in_bins = f"{name}_bin"
     parts = {

@@ -22,7 +22,7 @@ from ..materials import (
     parse_series,
     parse_shifts,
 )
-from ..roller_toml import make_roller
+from ..presets import make_roller
 from ..rollers import Cylinder, Scene, scene_of
 
 # --- Sections of a run file beside the roller's and [run] ---

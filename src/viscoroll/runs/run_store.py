@@ -25,7 +25,16 @@ import numpy as np
 
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
-from ..core import SYMBOLS, FileError, Floats, NDArray, as_file_error, shape_error, write_bytes
+from ..core import (
+    SYMBOLS,
+    FileError,
+    Floats,
+    NDArray,
+    as_file_error,
+    shape_error,
+    si_unit,
+    write_bytes,
+)
 from ..motion import (
     Ensemble,
     Summary,
@@ -35,8 +44,7 @@ from ..motion import (
     summary_dataset,
 )
 from ..motion.ensemble import ensemble
-from ..roller_toml import CylinderSection
-from ..rollers import UNITS
+from ..presets import CylinderSection
 from ..sampling import points
 from . import run_records
 from .run_records import (
@@ -178,7 +186,7 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
     :func:`runs.roll_inputs`).
     Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a
     material does not allow, CancelledError if the run was interrupted
-    (:func:`.blocks.cancel_with`).
+    (:func:`.arrays.cancel_with`).
     """
     start, stop = run.edges(block)
     values = block_inputs(run, block)
@@ -281,8 +289,8 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     letter, _, index = name.partition("_")
     if letter in _SERIES and index.isdecimal():
         return {"long_name": _SERIES[letter].format(index), "units": "1"}
-    if name in CylinderSection.__struct_fields__ and name not in SYMBOLS:
-        return {"long_name": f"{name} of the cylinder", "units": UNITS.get(name, "1")}
+    if name in CylinderSection.__annotations__ and name not in SYMBOLS:
+        return {"long_name": f"{name} of the cylinder", "units": si_unit(name)}
     about = column_attributes(name, si)
     return {
         key: value.tolist() if isinstance(value, np.ndarray) else value
@@ -495,7 +503,7 @@ def block_content(run: Run, block: int) -> BlockContent:
     Returns the :class:`BlockContent`, whose ``files`` are {} if ``settings.keep`` is "summaries".
     Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a
     material does not allow, CancelledError if the run was interrupted
-    (:func:`.blocks.cancel_with`), MissingDependencyError if motions are kept and zarr is not
+    (:func:`.arrays.cancel_with`), MissingDependencyError if motions are kept and zarr is not
     installed.
     """
     values, motions = roll_block(run, block)

@@ -49,7 +49,7 @@ from ..motion import (
     make_problem,
     output_times,
 )
-from ..roller_toml import check_sections, locate_error
+from ..presets import check_sections, locate_error
 from ..sampling import Design
 from .run_rollers import RUN_SECTIONS, Rollers, drive_of, roller_of
 from .uncertain_inputs import Inputs, correlated, inputs_in, inputs_of

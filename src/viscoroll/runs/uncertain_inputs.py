@@ -20,7 +20,7 @@ import numpy as np
 
 from ..core import FileError, Floats, check_keys, import_extra, section_error, si_unit, suggestion
 from ..materials import SECTIONS
-from ..roller_toml import SCHEMA
+from ..presets import SCHEMA
 from ..sampling import LARGEST, SMALLEST
 from .run_rollers import RUN_SECTIONS
 

@@ -8,15 +8,14 @@ of contact states, stresses, equilibria, tables and motions.  Other figures are 
 from __future__ import annotations
 
 import re
-from os import PathLike
 from textwrap import fill
 from typing import Any
 
 import numpy as np
 
-from ..checks import NDArray
+from ..arrays import NDArray
 from ..errors import FileError, ParameterError
-from ..files import DataArray, Dataset, Figure, as_path, replace_file
+from ..files import DataArray, Dataset, Figure, FilePath, as_path, replace_file
 from ..scale import MEASURED, SYMBOLS
 
 # --- Common parts of all figures ---
@@ -85,7 +84,7 @@ def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[
 
 def plot_measured_range(
     axes: Any, x: NDArray, y: NDArray, band: tuple[float, float] | None, **line: Any
-) -> list[Any]:
+) -> Any:
     """Plot a curve, solid where |x| lies in a measured band and dashed outside.
 
     axes: axes of matplotlib, drawn into.
@@ -94,22 +93,20 @@ def plot_measured_range(
     ``line`` everywhere.
     line: keyword arguments of ``Axes.plot``, the style of the line, of which with a band linestyle
     has no effect.
-    Returns the lines of matplotlib: one without a band; else the solid and the dashed one, of which
-    only the first has the label, and either may be without points.
+    Returns the line of matplotlib that has the label, with a band the solid one; it, and the dashed
+    one, may be without points.
     """
     if band is None:
-        return list(axes.plot(x, y, **line))
+        return axes.plot(x, y, **line)[0]
     outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
     solid = np.where(outside, np.nan, y)
     # The dashed curve begins at the last measured point: neighbours of points outside belong to it.
     dashed = outside.copy()
     dashed[1:] |= outside[:-1]
     dashed[:-1] |= outside[1:]
-    drawn = axes.plot(x, solid, **line | {"linestyle": "-"})
-    return [
-        *drawn,
-        *axes.plot(x, np.where(dashed, y, np.nan), **line | {"linestyle": "--", "label": None}),
-    ]
+    (drawn,) = axes.plot(x, solid, **line | {"linestyle": "-"})
+    axes.plot(x, np.where(dashed, y, np.nan), **line | {"linestyle": "--", "label": None})
+    return drawn
 
 
 def has_numbers(x: NDArray[Any]) -> bool:
@@ -232,7 +229,7 @@ def with_unit(text: str, units: str, separator: str = " ") -> str:
     return text if units == "1" else text + separator + re.sub(r"(-\d)", r"$^{\1}$", units)
 
 
-def save(figure: Figure, path: str | PathLike[str]) -> None:
+def save(figure: Figure, path: FilePath) -> None:
     """Write a figure, whole or not at all.
 
     Parameters

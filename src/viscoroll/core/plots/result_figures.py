@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import NDArray
+from ..arrays import NDArray
 from ..errors import ParameterError
 from ..files import Dataset, Figure
 from . import (
@@ -62,21 +62,15 @@ def master_curve(material: Any) -> Figure:
     figure, (left, right) = new_figure(title, 1, 2, 3.4)
     # None without a record, else lowest and highest frequency
     band = material.measured and (material.measured.low, material.measured.high)
-    # [:1]: the legend has the solid part of each curve
-    lines = plot_measured_range(left, omega, material.storage(omega), band, **LINES[0], label="E'")[
-        :1
-    ]
     left.set(xscale="log", yscale="log")
-    if (
-        material.prony.E.size
-    ):  # the loss modulus of an elastic material is 0, which has no logarithm
-        lines += plot_measured_range(
-            left, omega, material.loss(omega), band, **LINES[1], label="E''"
-        )[:1]
-        factor = left.twinx()
-        lines += plot_measured_range(
-            factor, omega, material.tan_delta(omega), band, **LINES[2], label="tan delta"
-        )[:1]
+    curves = [(left, material.storage, "E'")]
+    if material.prony.E.size:  # the loss of an elastic material is 0, which has no logarithm
+        curves += [(left, material.loss, "E''"), (left.twinx(), material.tan_delta, "tan delta")]
+    lines = [
+        plot_measured_range(axes, omega, modulus(omega), band, **line, label=label)
+        for (axes, modulus, label), line in zip(curves, LINES, strict=False)
+    ]
+    for factor, *_ in curves[2:]:
         factor.set(ylabel="loss factor tan delta", ylim=(0.0, None))
     left.set(xlabel="angular frequency, rad/s", ylabel="storage and loss modulus, Pa")
     small_legend(left, handles=lines, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)

@@ -1,14 +1,24 @@
-"""Checks of arguments, and the types of arrays and numbers, for type checkers.
+"""Arrays and numbers: their types, checks of those that callers give, and work on them by blocks.
 
 A number or an array that a caller gives becomes float64 in the unit of the argument, or raises
 ParameterError: it must be finite and in range, and the shapes of arrays must broadcast.  A number
 that has a unit is converted (:mod:`.quantities`).
+
+Blocks follow from the size of the work alone, so that results do not depend on the number of
+threads.  The kernels release the GIL, so that plain threads use all cores without a parallel region
+of numba: no second compilation, no threading layer that could clash with that of a host program,
+safe in forked processes and from several threads.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import os
+import threading
+from collections import deque
+from collections.abc import Callable, Collection, Iterable, Sequence
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
@@ -140,13 +150,9 @@ def _range_words(low: float, above: float, high: float) -> str:
     """
     if high < math.inf:
         return f"in [{low:g}, {high:g}]" if low > -math.inf else f"in ({above:g}, {high:g}]"
-    return (
-        f"finite and >= {low:g}"
-        if low > -math.inf
-        else f"finite and > {above:g}"
-        if above > -math.inf
-        else ""
-    )
+    if low > -math.inf:
+        return f"finite and >= {low:g}"
+    return f"finite and > {above:g}" if above > -math.inf else ""
 
 
 def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:
@@ -168,32 +174,22 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
     if not has_no_unit(value):
         plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
-            raise ParameterError(
-                name,
-                "a masked array",
-                "plain",
-                f"{name} is a masked array: give {name}.compressed()",
-            )
+            sentence = f"{name} is a masked array: give {name}.compressed()"
+            raise ParameterError(name, "a masked array", "plain", sentence)
     try:
         array = np.asarray(plain)
         if array.dtype.kind == "O" and all(map(is_real, array.flat)):
             array = array.astype(np.float64)
-    except (
-        TypeError,
-        ValueError,
-        OverflowError,
-    ):  # a ragged list, or an integer that no double holds
-        array = np.asarray(None)
+    except (TypeError, ValueError, OverflowError):
+        array = np.asarray(None)  # of a ragged list, or an integer that no double holds
     if array.dtype.kind not in "iuf":
         words = _range_words(*bounds)
-        raise ParameterError(
-            name, describe_value(value), f"a number, {words}" if words else "a finite number"
-        )
+        allowed = f"a number, {words}" if words else "a finite number"
+        raise ParameterError(name, describe_value(value), allowed)
     if array.dtype.itemsize <= _DOUBLE:
         return array.astype(np.float64, copy=False)
-    with np.errstate(
-        over="ignore"
-    ):  # long doubles beyond the doubles become infinite, which is refused
+    # long doubles beyond the doubles become infinite, which is refused
+    with np.errstate(over="ignore"):
         return array.astype(np.float64)
 
 
@@ -224,15 +220,7 @@ def extent(array: Floats) -> tuple[float, float]:
     return float(array.min()), float(array.max())
 
 
-def check_number(
-    name: str,
-    value: ArrayLike,
-    *,
-    unit: Units = "1",
-    low: float = -math.inf,
-    above: float = -math.inf,
-    high: float = math.inf,
-) -> float:
+def check_number(name: str, value: ArrayLike, **bounds: Any) -> float:
     """Check an argument that is a single number, and return it as a float in the unit of the
     argument.
 
@@ -240,15 +228,12 @@ def check_number(
     ----------
     name : name of the argument, for errors.
     value : a number, perhaps with a unit.
-    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1",
-        "1" of a dimensionless number, or an object that has units by name.
-    low, high : smallest and largest allowed value, in ``unit``; infinite by default.
-    above : number that the value must exceed, in ``unit``; -infinite by default.
+    **bounds : ``unit``, ``low``, ``above`` and ``high`` as in :func:`check_array_extent`.
 
     Returns
     -------
     float
-        The finite number, in ``unit``.
+        The finite number, in the unit of the argument.
 
     Raises
     ------
@@ -256,13 +241,10 @@ def check_number(
         If it is not one finite number (an array with axes is refused, even of one element), if it
         is outside these limits, or if its unit has another dimension.
     """
-    # as in check_array_extent; a NaN or infinity goes on and is refused
-    if type(value) is float and above < value < high and low <= value:
-        return value
-    array = check_array(name, value, unit=unit, low=low, above=above, high=high)
+    array, (number, _) = check_array_extent(name, value, **bounds)
     if array.ndim:
         raise ParameterError(name, describe_value(value), "a single number")
-    return float(array)
+    return number
 
 
 def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
@@ -395,3 +377,224 @@ def check_bool(name: str, value: Any) -> bool:
     if isinstance(value, bool | np.bool_):
         return bool(value)
     raise ParameterError(name, describe_value(value), "True or False")
+
+
+# --- Work on arrays by blocks ---
+
+#: Blocks submitted for each worker and not yet awaited.  A future takes a kilobyte, so that not all
+#: are submitted.
+_BLOCKS_IN_QUEUE = 8
+
+
+def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
+    """Return a function that reads blocks of a broadcast array, so that the whole of it is never in
+    memory.
+
+    array: numbers that broadcast to ``shape``.
+    shape: shape to which all arrays of the work broadcast.
+    Returns a function (start, stop) -> the elements ``start`` to ``stop`` - 1 of the broadcast and
+    flattened array, in C order, a vector (stop - start,), for 0 <= start < stop <= its size.  If
+    ``array`` has a single element the vector is always (1,), that element.  Vectors are views if
+    ``array`` is contiguous and of that shape, else copies.  All are contiguous and read-only,
+    because numba compiles a kernel again for each kind of array.
+    Raises ValueError where ``array`` has more than one element and does not broadcast to ``shape``.
+    """
+    # a single element stays one, which kernels read for every state
+    if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
+        vector = broadcast_vector(array, array.shape)
+        if array.size == 1:
+            return lambda start, stop: vector
+        return lambda start, stop: vector[start:stop]
+    whole = np.broadcast_to(array, shape)
+
+    def read_block(start: int, stop: int) -> Floats:
+        """Return a read-only copy of elements of the flattened array, a contiguous vector (stop -
+        start,).
+
+        start, stop: index of the first element, and of the one after the last, 0 <= start < stop <=
+        its size.
+        """
+        # chunks of one axis, copied to a buffer where memory is not in order, within a range that
+        # is set below
+        iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
+        flags = ["external_loop", "buffered", "ranged"]
+        chunks = iterator(
+            whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start
+        )
+        chunks.iterrange = start, stop
+        # The iterator overwrites each chunk by the next one.
+        vector = np.concatenate([chunk.copy() for chunk in chunks])
+        vector.flags.writeable = False
+        return vector
+
+    return read_block
+
+
+def broadcast_rows(arrays: Collection[Any], shape: tuple[int, ...]) -> Floats:
+    """Return arrays and numbers as the rows of one array, each broadcast to a shape and flattened.
+
+    arrays: doubles, each a number or an array that broadcasts to ``shape``.
+    shape: shape of the states; () of a single state.
+    Returns a new array (rows, states), in the order of ``arrays``.
+    """
+    rows = np.empty((len(arrays), *(shape or (1,))))
+    for row, array in zip(rows, arrays, strict=True):
+        row[...] = array
+    return rows.reshape(len(arrays), -1)
+
+
+def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
+    """Return an array, broadcast to a shape and flattened, as a contiguous read-only vector.
+
+    array: numbers that broadcast to ``shape``.
+    shape: shape of the result before it is flattened.
+    Returns a vector with as many elements as ``shape`` has, in C order, a view where possible, else
+    a copy; if ``array`` has a single element it is (1,), for any shape.
+    Raises ValueError where ``array`` has more than one element and does not broadcast.
+    """
+    whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
+    # a view of its own, so that the caller's array stays writable
+    vector = whole.reshape(-1).view()
+    vector.flags.writeable = False
+    return vector
+
+
+def thread_count(threads: int | None = None) -> int:
+    """Return the number of threads: ``threads``, else ``$VISCOROLL_THREADS``, else that of the
+    available cores.
+
+    threads: a whole number >= 1; None: the environment variable, if it is set and not empty, else
+        all cores that this process may use.
+    Returns an int >= 1.
+
+    Raises
+    ------
+    ParameterError
+        If the one that is used, ``threads`` or the variable, is not a whole number >= 1.
+    """
+    return (
+        check_integer("threads", threads, 1)
+        if threads is not None
+        else _environment_threads() or available_cores()
+    )
+
+
+def _environment_threads() -> int | None:
+    """Return ``$VISCOROLL_THREADS`` as an int >= 1; None where it is not set, or empty.
+
+    :func:`run_blocks` also calls it for work of a single block, to check the variable alone.
+    Raises ParameterError for any other text, as "0".
+    """
+    if not (given := os.environ.get("VISCOROLL_THREADS")):
+        return None
+    with suppress(ValueError):
+        if (count := int(given)) >= 1:
+            return count
+    raise ParameterError("VISCOROLL_THREADS", repr(given), "a whole number >= 1, or not set")
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use, or of the machine where the system does
+    not tell; >= 1.
+    """
+    if hasattr(os, "process_cpu_count"):  # Python 3.13
+        return os.process_cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+_cancellation = threading.local()
+
+
+def cancel_with(event: threading.Event) -> None:
+    """Let :func:`run_blocks` of this thread raise CancelledError before its next block once
+    ``event`` is set.
+
+    It has no effect on calls with several workers or a progress bar.
+    """
+    _cancellation.event = event
+
+
+def run_blocks(
+    work: Callable[[int, int], None],
+    count: int,
+    block: int,
+    *,
+    threads: int | None = None,
+    progress: str | None = None,
+) -> None:
+    """Call a function for consecutive blocks of ``range(count)``, on several threads, and return
+    when all are done.
+
+    Parameters
+    ----------
+    work : function (start, stop) -> None, which computes the elements ``start`` to ``stop`` - 1 of
+        a block and writes them where they belong.  Several threads call it at the same time.  Its
+        exceptions are raised here, of several that of the first block; then some of the blocks
+        after it have not been computed.
+    count : number of elements, >= 0; ``work`` is not called for 0.
+    block : number of elements of a block, >= 1, not checked; the last block may have fewer.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.  No
+        more are used than there are blocks; one worker without a progress bar is the calling thread
+        itself.
+    progress : title of a progress bar on standard error, which appears after one second; None: no
+    bar.
+
+    Raises
+    ------
+    CancelledError
+        If the event of :func:`cancel_with` is set and the blocks run one after another on this
+        thread.
+    ParameterError
+        If ``threads`` is not a whole number >= 1; without it, and for two elements and more, if
+        ``$VISCOROLL_THREADS`` is not.
+    """
+    edges = ((start, min(start + block, count)) for start in range(0, count, block))
+    workers = blocks = -(-count // block)  # rounded up
+    if blocks > 1 or threads is not None:
+        workers = min(thread_count(threads), blocks)
+    elif count > 1:
+        _environment_threads()  # a wrong value is an error of small work too
+    if workers <= 1 and progress is None:
+        event = getattr(_cancellation, "event", None)
+        for start, stop in edges:
+            if event is not None and event.is_set():
+                raise CancelledError
+            work(start, stop)
+        return
+    if progress is not None:
+        from tqdm import tqdm
+
+        edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
+    # with a bar and no blocks the pool still needs one worker
+    with ThreadPoolExecutor(max(workers, 1)) as pool:
+        _submit_all(pool, work, edges, _BLOCKS_IN_QUEUE * workers)
+
+
+def _submit_all(
+    pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int
+) -> None:
+    """Run all blocks on a pool, await them in order, and return when all are done.
+
+    If a block fails, its exception is raised when it is awaited; of several that of the first
+    block.  Then no further blocks are submitted, those that have not begun are cancelled, and those
+    that run are not awaited.
+
+    pool: :class:`concurrent.futures.Executor`, of threads.
+    work: function (start, stop) -> None.
+    edges: (start, stop) of each block, an iterable that is consumed as blocks are submitted.
+    most: largest number of blocks that are submitted and not yet awaited, >= 1; it bounds the
+    memory of the futures.
+    """
+    waiting: deque[Future[None]] = deque()
+    try:
+        for edge in edges:
+            waiting.append(pool.submit(work, *edge))
+            if len(waiting) > most:
+                waiting.popleft().result()
+        while waiting:
+            waiting.popleft().result()
+    finally:
+        for future in waiting:
+            future.cancel()
