@@ -26,6 +26,7 @@ from ..contact_mechanics import (
     pure_rolling_fields,
     resolve_model,
     warn_of_contact,
+    zeros_between,
 )
 from ..contact_mechanics.steady import steady
 from ..core import (
@@ -59,8 +60,6 @@ from .heated_bodies import (
 
 #: states of a block: arrays over nodes and states then stay in the cache
 _BLOCK = 256
-#: distance from a zero at which it is found, relative, and absolute in K
-_ZERO_TOLERANCE = {"xrtol": 1e-14, "xatol": 1e-15}
 #: No kappa M exceeds this: the pressure acts at most half the contact length at rest ahead of the
 #: axis; twice that, for b_T down to 1/4.
 _MOST = 1.0
@@ -168,10 +167,8 @@ def zeros_of(
 ) -> Zeros:
     """Find all zeros of the balances of states.
 
-    They lie where f (module) changes its sign between two nodes of the temperature.  Two zeros
-    between neighbouring nodes are found where |f| has a minimum at a node near which a parabola
-    reaches 0, and f has the other sign at the extremum there; zeros at which f only touches 0 are
-    not found.
+    Between nodes of the temperature they are found as by
+    :func:`viscoroll.contact_mechanics.rolling_resistance.zeros_between`.
 
     heat: function (indices of states, temperatures) -> heat of the body, W/m, (m,) each.
     curve: shift of the body, which places the nodes.
@@ -179,10 +176,9 @@ def zeros_of(
     hottest: temperature up to which zeros are sought, degrees Celsius, (n,).
     Returns the :class:`Zeros`, to the rounding of f.
     """
-    from scipy.optimize.elementwise import find_minimum, find_root
 
-    def rest(rise: Floats, n: Integers, sign: Any = 1.0) -> Floats:
-        return sign * (heat(n, ambient[n] + rise) / conductance[n] - rise)
+    def rest(rise: Floats, n: Integers) -> Floats:
+        return heat(n, ambient[n] + rise) / conductance[n] - rise
 
     parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
     for first in range(0, ambient.size, _BLOCK):
@@ -191,37 +187,12 @@ def zeros_of(
         nodes = curve.nodes(ambient[own].min() - 1.0, hottest[own].max() + 1.0)
         rise = nodes - ambient[own, np.newaxis]
         f = rest(rise.ravel(), np.repeat(own, nodes.size)).reshape(rise.shape)
-        n, k = _extrema(f)
-        if n.size:  # they take the places of their nodes
-            triple = rise[n, k - 1], rise[n, k], rise[n, k + 1]
-            sign = np.sign(f[n, k])
-            found = find_minimum(rest, triple, args=(own[n], sign))
-            rise[n, k] = found.x
-            f[n, k] = sign * found.f_x
-        positive = f > 0.0
-        n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
-        ends = rise[n, k], rise[n, k + 1]
-        found = find_root(rest, ends, args=(own[n],), tolerances=_ZERO_TOLERANCE)
-        # stable where f falls, from a positive node
-        parts.append((own[n], ambient[own[n]] + found.x, positive[n, k]))
+        # stable where f falls
+        n, zero, stable = zeros_between(lambda x, n, own=own: rest(x, own[n]), rise, f)
+        parts.append((own[n], ambient[own[n]] + zero, stable))
     n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
     found = theta <= hottest[n]
     return Zeros(n[found], theta[found], stable[found])
-
-
-def _extrema(f: Floats) -> tuple[Integers, Integers]:
-    """Return the nodes at which |f| has a minimum near which a parabola through three nodes
-    reaches 0; f has one sign at the three.
-
-    f: values of the balances, (states, nodes).
-    Returns (rows, columns) of these nodes, (m,) each.
-    """
-    size = np.abs(f)
-    before, at, after = (size[:, k : f.shape[1] - 2 + k] for k in range(3))
-    near = (at <= before) & (at <= after) & (at < np.abs(np.diff(f, 2)))
-    one_sign = np.abs(np.diff(np.sign(f), axis=1)) == 0.0
-    n, k = (near & one_sign[:, 1:] & one_sign[:, :-1]).nonzero()
-    return n, k + 1
 
 
 # --- Temperatures at which a roller runs ---
