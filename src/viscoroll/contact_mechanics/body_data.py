@@ -171,7 +171,7 @@ def _layer_terms(s: Floats, nu: float) -> tuple[Floats, Floats]:
     nu: Poisson's ratio of the layer.
     Returns (B, D), (n,) each, dimensionless.
     """
-    # (1 - nu) f_zz + nu k^2 f = 0 and (1 - nu) f_zzz = (2 - nu) k^2 f_z at z = h are linear in B and D
+    # of (1 - nu) f_zz + nu k^2 f = 0 and (1 - nu) f_zzz = (2 - nu) k^2 f_z at z = h
     own = (1.0 - 2.0 * nu) * np.sinh(s) ** 2 + 2.0 * (1.0 - nu) * np.cosh(s) ** 2
     det = ((1.0 - 2.0 * nu) * np.sinh(s)) ** 2 - (2.0 * (1.0 - nu) * np.cosh(s)) ** 2 - s * s
     return (s - (1.5 - 2.0 * nu) * np.sinh(2.0 * s)) / det, own / det

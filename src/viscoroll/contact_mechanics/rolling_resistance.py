@@ -283,7 +283,7 @@ def zeros_between(
     y: Floats,
     noise: Floats | float = 0.0,
 ) -> tuple[Integers, Floats, Booleans]:
-    """Find the zeros of several functions between their nodes, including pairs of zeros between
+    r"""Find the zeros of several functions between their nodes, including pairs of zeros between
     neighbouring nodes.
 
     A zero lies where a function changes its sign between two nodes.  Two zeros between neighbouring
@@ -324,7 +324,7 @@ def zeros_between(
 
 
 def _extrema(y: Floats) -> tuple[Integers, Integers]:
-    """Return the nodes at which \|y\| has a minimum near which a parabola through three nodes
+    r"""Return the nodes at which \|y\| has a minimum near which a parabola through three nodes
     reaches 0; y has one sign at the three, of which rounding errors have no such parabola.
 
     y: values of functions, (functions, nodes).

@@ -175,6 +175,23 @@ class Equilibria(Values):
     _rows: tuple[str, ...]
     _ranges: tuple[str, ...]
 
+    def __init__(self, values: dict[str, Any], labels: Labels | None, *, si: bool) -> None:
+        """Store the equilibria.
+
+        values: field -> array (states..., equilibria), ``count`` without that axis and
+            ``eigenvalues`` with one more.
+        labels: axes and coordinates of the arguments, which the values then get; None without.
+        si: whether the values have SI units.
+        """
+        if labels is not None:
+            axes = {"count": (), "eigenvalues": ("equilibrium", "rate")}
+            values = {
+                name: labels.apply(name, each, *axes.get(name, ("equilibrium",)))
+                for name, each in values.items()
+            }
+        super().__init__(values, title=self._heading, si=si)
+        self._labels = labels
+
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return the title and the rows of the printed report.
 
@@ -291,11 +308,10 @@ class Steady(Equilibria):
         scale: units of the roller.
         labels: axes and coordinates of the arguments, None without.
         """
-        super().__init__(values, title="Steady rolling", si=scale.si)
+        super().__init__(values, labels, si=scale.si)
         self._free = free
         self.reasons = reasons
         self.scale = scale
-        self._labels = labels
 
     def keys(self) -> Iterable[str]:
         """Return the names of the fields, which are attributes and are read by ``result[name]``
@@ -467,27 +483,15 @@ def pack_result(
     rows = np.concatenate([states.rows[: Field.FAST], more])
     rows = pad(rows, number, count, loads.shape)
     found = dict(zip(_FIELDS, rows, strict=False))
-    if scale.si:
-        for name in found.keys() & DIMENSIONS.keys():
-            # a unit for each load needs an axis for the equilibria
-            unit = scale[name]
-            per_load = isinstance(unit, np.ndarray)
-            found[name] = found[name] * (unit[..., np.newaxis] if per_load else unit)
-    # the unit of all three, 1/s of a cylinder; one for each load needs an axis for the equilibria
+    for name in (found.keys() & DIMENSIONS.keys()) if scale.si else ():
+        found[name] = found[name] * append_axis(scale[name])
+    # the unit of all three, 1/s of a cylinder
     fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
-    eigenvalues.real[..., 0] = fast
-    eigenvalues.real[..., 1] = slow
-    eigenvalues.imag[..., 0] = -imaginary
-    eigenvalues.imag[..., 1] = imaginary
+    eigenvalues[..., 0] = fast - 1j * imaginary
+    eigenvalues[..., 1] = slow + 1j * imaginary
     found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
     found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
-    if labels is not None:
-        axes_after = {"count": (), "eigenvalues": ("equilibrium", "rate")}
-        found = {
-            name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",)))
-            for name, each in found.items()
-        }
     return Steady(
         found, rows[len(_FIELDS) : len(_FIELDS) + 2], reasons=reasons, scale=scale, labels=labels
     )

@@ -19,7 +19,7 @@ omega, or omega, the eigenvalues and the moments without traction.
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,13 +33,17 @@ from .steady_loads import (
     balance,
     creep_at_rest,
     creep_beyond_free,
+    fields_at,
     moments_of_losses,
-    rest_on_table,
     shear_at,
+    torque_left,
 )
 
 #: loads of one block of work: some milliseconds
 _BLOCK = 1 << 12
+#: speed at which slopes at rest are taken, divided by the first node of a table: there the law is
+#: linear in u
+_SLOW = 1e-3
 #: |Q|/mu below which delta is computed from its slope at Q = 0
 _SMALL_TRACTION = 1e-8
 #: |Q|/mu below which a Newton step corrects delta, which is a difference there
@@ -140,15 +144,13 @@ class States(NamedTuple):
         rows[Field.FREE_HALF_SPACE :] = (
             answers[[Field.M_HALF_SPACE, Field.M_CYLINDER]] if free is None else free
         )
-        signed = (
-            Field.V,
-            Field.Q,
+        moments = [
             Field.M_HALF_SPACE,
             Field.M_CYLINDER,
             Field.FREE_HALF_SPACE,
             Field.FREE_CYLINDER,
-        )
-        rows[list(signed)] *= sign
+        ]
+        rows[[Field.V, Field.Q, *moments]] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
         # of the frame where V > 0: a mirror image has the same eigenvalues
         rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers, loads.gains, loads.j[load])
@@ -217,12 +219,37 @@ class States(NamedTuple):
         law: table with ``coupled`` rows.
         Returns the :class:`States`, (n,); omega is NaN where the friction does not suffice.
         """
+        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
+        still = np.zeros(load.size)
+        contacts = Contacts(law, kappa, mu)
+        spin = loads.given != "force"
+        required = loads.torque[load] if spin else -loads.force[load]
+        delta, unbalanced = balance(contacts, still, required, spin)
+        fields = fields_at(contacts, still, delta)
+        Q = mu * fields["Q_over_mu"]
+        half_space = fields["M_half_space"] / kappa
+        cylinder = fields["M_cylinder"] / kappa
+        gains = loads.gains
+        # the loads in balance at this creepage, and their derivatives with respect to V
+        force = half_space - Q
+        torque = Q + cylinder
+        dforce_dV = gains.force_V + gains.force_omega * (1.0 + delta)
+        dtorque_dV = gains.torque_V + gains.torque_omega * (1.0 + delta)
+        V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
+        left_at_V = torque_left(contacts, V, force + dforce_dV * V, torque + dtorque_dV * V)
+        # derivative of the torque left with respect to the force, a difference quotient
+        step = 1e-6 * mu
+        left_of_less_force = torque_left(contacts, still, force - step, torque)
+        left_at_rest = torque_left(contacts, still, force, torque)
+        dleft_dforce = (left_of_less_force - left_at_rest) / -step
         rows = np.zeros((_COUNT, load.size))
-        rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
-        rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.BETA]] = found
+        rows[Field.DELTA] = np.where(unbalanced == 0.0, delta, np.nan)
+        rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] = Q, half_space, cylinder
+        rows[Field.BETA] = fields["beta"]
         rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
         rows[Field.FAST] = -np.inf
-        rows[Field.SLOW] = -rate
+        # the rate at which a small V grows when the creepage of rest is kept
+        rows[Field.SLOW] = left_at_V / V / (j * (1.0 + delta) + np.maximum(dleft_dforce, 0.0))
         return cls(load, rows)
 
     @classmethod
@@ -400,16 +427,12 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     delta_0 = contacts.free_creep(V)
     names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     free = contacts.fields(V, delta_0, *names)
-    if law.cover is None:
+    if loads.given is None and law.cover is None:  # V is such that both loads balance M
         M = free[0] + free[1]
         # part of M by the half-space; one half of elastic bodies, whose M is 0
         share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
-        if loads.given is None:  # V is such that both loads balance M
-            M = force + torque
-            Q = share * torque - (1.0 - share) * force
-        else:
-            Q = torque - (1.0 - share) * M if loads.given == "torque" else share * M - force
-        moments: Any = (share * M, (1.0 - share) * M)
+        Q = share * torque - (1.0 - share) * force
+        moments = np.array([share, 1.0 - share]) * (force + torque)
     else:
         shear = shear_at(contacts, V)
         if loads.given == "torque":

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -177,19 +177,22 @@ def zeros_of(
     Returns the :class:`Zeros`, to the rounding of f.
     """
 
-    def rest(rise: Floats, n: Integers) -> Floats:
+    def rest(first: int, rise: Floats, k: Integers) -> Floats:
+        n = first + k
         return heat(n, ambient[n] + rise) / conductance[n] - rise
 
     parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
     for first in range(0, ambient.size, _BLOCK):
-        own = np.arange(first, min(first + _BLOCK, ambient.size))
+        balance = partial(rest, first)
+        around = ambient[first : first + _BLOCK]
         # a margin of 1 K, so that a zero at either end lies between nodes
-        nodes = curve.nodes(ambient[own].min() - 1.0, hottest[own].max() + 1.0)
-        rise = nodes - ambient[own, np.newaxis]
-        f = rest(rise.ravel(), np.repeat(own, nodes.size)).reshape(rise.shape)
+        nodes = curve.nodes(around.min() - 1.0, hottest[first : first + _BLOCK].max() + 1.0)
+        rise = nodes - around[:, np.newaxis]
+        k = np.repeat(np.arange(around.size), nodes.size)
+        f = balance(rise.ravel(), k).reshape(rise.shape)
         # stable where f falls
-        n, zero, stable = zeros_between(lambda x, n, own=own: rest(x, own[n]), rise, f)
-        parts.append((own[n], ambient[own[n]] + zero, stable))
+        n, zero, stable = zeros_between(balance, rise, f)
+        parts.append((first + n, around[n] + zero, stable))
     n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
     found = theta <= hottest[n]
     return Zeros(n[found], theta[found], stable[found])
@@ -245,9 +248,8 @@ class Temperatures(Equilibria):
 
     def __init__(self, values: dict[str, Any], reason: Any, labels: Labels | None) -> None:
         """Keep the fields by name, their ``reason`` and the ``labels`` of the arguments."""
-        super().__init__(values, title=self._heading, si=True)
+        super().__init__(values, labels, si=True)
         self.reason = reason
-        self._labels = labels
 
     def to_xarray(self) -> Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
@@ -450,11 +452,6 @@ def _pack(
     found = dict(zip(Temperatures._rows, fields, strict=True))
     found |= {"stable": stable == 1.0, "measured": measured == 1.0}
     found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
-    if labels is not None:
-        found = {
-            name: labels.apply(name, each, *(() if name == "count" else ("equilibrium",)))
-            for name, each in found.items()
-        }
     return Temperatures(found, reason.reshape(states.shape) if states.shape else reason[0], labels)
 
 
