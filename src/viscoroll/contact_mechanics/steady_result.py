@@ -484,7 +484,11 @@ def pack_result(
     rows = pad(rows, number, count, loads.shape)
     found = dict(zip(_FIELDS, rows, strict=False))
     for name in (found.keys() & DIMENSIONS.keys()) if scale.si else ():
-        found[name] = found[name] * append_axis(scale[name])
+        unit = scale[name]
+        # in place of append_axis, whose calls take longer here than the rest
+        found[name] = found[name] * (
+            unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
+        )
     # the unit of all three, 1/s of a cylinder
     fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)

@@ -19,7 +19,7 @@ omega, or omega, the eigenvalues and the moments without traction.
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -427,19 +427,19 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     delta_0 = contacts.free_creep(V)
     names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     free = contacts.fields(V, delta_0, *names)
-    if loads.given is None and law.cover is None:  # V is such that both loads balance M
+    on_spin = loads.given == "torque"
+    Q = torque - free[1] if on_spin else free[0] - force
+    moments: Any = free[:2]
+    if law.cover is not None:
+        shear = shear_at(contacts, V)
+        Q = (shear.traction_of_torque if on_spin else shear.traction_of_force)(Q)
+        moments = moments + shear.moments(Q)
+    elif loads.given is None:  # V is such that both loads balance M
         M = free[0] + free[1]
         # part of M by the half-space; one half of elastic bodies, whose M is 0
         share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
         Q = share * torque - (1.0 - share) * force
-        moments = np.array([share, 1.0 - share]) * (force + torque)
-    else:
-        shear = shear_at(contacts, V)
-        if loads.given == "torque":
-            Q = shear.traction_of_torque(torque - free[1])
-        else:
-            Q = shear.traction_of_force(free[0] - force)
-        moments = free[:2] + shear.moments(Q)
+        moments = share * (force + torque), (1.0 - share) * (force + torque)
     part = np.abs(Q) / mu
     exists = part < 1.0
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
