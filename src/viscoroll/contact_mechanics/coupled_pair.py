@@ -160,6 +160,16 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     return k, phases, excess / (np.pi * thickness)
 
 
+def _compliance(instant: float, modes: list[tuple[float, float]], k: Floats) -> Any:
+    """Return the compliance under waves of the wave numbers ``k``, complex, (n,), of a body whose
+    compliance at rest is 1; ``instant``, ``modes``: as of :meth:`CoupledBody.at_speed`.
+    """
+    compliance = np.full(k.size, complex(instant))
+    for strength, length in modes:
+        compliance += strength / (1.0 - 1j * k * length)
+    return compliance
+
+
 def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float, float]]) -> Floats:
     """Return what a bonded layer adds to the kernels of a half-space (module), by integrals over
     the wave number with the complex compliance.
@@ -171,9 +181,7 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
     :func:`_fit`, without terms linear in x.
     """
     k, phases, excess = _phases(nu, thickness)
-    compliance = np.full(k.size, complex(instant))
-    for strength, length in modes:
-        compliance += strength / (1.0 - 1j * k * length)
+    compliance = _compliance(instant, modes, k)
     # columns 0 to 2 are those of L - 1, T - 1 and C with the real part of the compliance, 3 to 5
     # with the imaginary part; the coupling, without -i sgn(k), takes them the other way round
     weights = np.concatenate([excess * compliance.real, excess * compliance.imag]).T
@@ -211,12 +219,7 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     Returns the :class:`BodyKernels`.
     """
     size, fit = _fit()
-    instant = 1.0 if u == 0.0 else body.instant
-    modes = (
-        []
-        if u == 0.0 or math.isinf(u)
-        else [(J, T * u) for J, T in zip(body.J, body.T, strict=True)]
-    )
+    instant, modes = body.at_speed(u)
     values = np.zeros((2, 3, size.size))
     for row, sign in enumerate((1.0, -1.0)):
         normal, coupling = _half_space(instant, modes, sign * size)
@@ -320,10 +323,7 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
     q = transforms(profile.nodes, profile.q, k)
     total = 0.0
     for body in bodies:
-        compliance = np.full(k.size, complex(body.instant))
-        for strength, time in zip(body.J, body.T, strict=True):
-            with np.errstate(over="ignore", invalid="ignore"):
-                compliance += strength / (1.0 - 1j * k * (time * u)) if math.isfinite(u) else 0.0
+        compliance = _compliance(*body.at_speed(u), k)
         L, _, C = layer_transforms(body.nu, k * body.thickness)
         work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
         total += body.share * float(weights @ work.real) / np.pi
@@ -383,6 +383,15 @@ class CoupledBody(NamedTuple):
     def instant(self) -> float:
         """Instantaneous compliance divided by the long-time one, >= 0."""
         return max(1.0 - math.fsum(self.J), 0.0)
+
+    def at_speed(self, u: float) -> tuple[float, list[tuple[float, float]]]:
+        """Return the instantaneous compliance at kappa |V| = ``u``, and strength and length of each
+        mode, in l0; the bodies are elastic for u = 0 and u infinite.
+        """
+        if u == 0.0:
+            return 1.0, []
+        elastic = math.isinf(u)
+        return self.instant, [] if elastic else [(J, T * u) for J, T in zip(self.J, self.T)]
 
     @property
     def local(self) -> float:

@@ -370,22 +370,13 @@ def _stress_of_law(
         else np.arange(len(scene.material_array), dtype=np.float64)
     )
     # first the fields of Points in their order; an array of materials has their indices for alpha
-    arrays = {
-        "x": x,
-        "kappa": scene.kappa,
-        "mu": scene.mu,
-        "lam": lam,
-        "epsilon": epsilon,
-        "beta": beta,
-        "zeta": zeta,
-        "alpha": alpha,
-        "mirror": mirror,
-        "sign": np.sign(delta) * mirror,
-    }
-    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in arrays.items()}
-    shape = broadcast_shape(**arrays)
+    state = (scene.kappa, scene.mu, lam, epsilon, beta, zeta, alpha)
+    arrays = [
+        np.asarray(value, np.float64) for value in (x, *state, mirror, np.sign(delta) * mirror)
+    ]
+    shape = broadcast_shape(x=x, V=arrays[3])  # lam has the shape of the states
     read_x, *readers, read_alpha, read_mirror, read_sign = (
-        block_reader(array, shape) for array in arrays.values()
+        block_reader(array, shape) for array in arrays
     )
     out = np.empty((2, math.prod(shape)))
     p, tau = out
