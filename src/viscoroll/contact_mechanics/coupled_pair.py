@@ -323,7 +323,8 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
     q = transforms(profile.nodes, profile.q, k)
     total = 0.0
     for body in bodies:
-        compliance = _compliance(*body.at_speed(u), k)
+        instant, modes = body.at_speed(u)
+        compliance = _compliance(instant, modes, k)
         L, _, C = layer_transforms(body.nu, k * body.thickness)
         work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
         total += body.share * float(weights @ work.real) / np.pi

@@ -12,7 +12,7 @@ determines omega for every V.  The other equation has one unknown, V:
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
 
 Of covers M depends on Q too.  qw times the equation of the axis less fw times that of the cylinder
-has no omega and gives Q for every V (:meth:`.steady_loads.Shear.traction_of_both`); either equation
+has no omega and gives Q for every V (:meth:`.steady_loads.Shear.traction`); either equation
 then gives omega, and R is the same.
 
 R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V
@@ -61,7 +61,7 @@ from .steady_loads import (
     search_nodes,
     shear_at,
 )
-from .steady_result import Diagnosis, Steady, pack_result
+from .steady_result import Diagnosis, Steady
 from .steady_states import (
     Field,
     States,
@@ -151,7 +151,7 @@ class _ScanProblem(NamedTuple):
         elif law.cover is not None:
             shear = shear_at(self.contacts, free.V)
             rest = free.moments - [force, torque]
-            Q = shear.traction_of_both(rest[0], -rest[1], of_force, of_torque)
+            Q = shear.traction(of_torque * rest[0] - of_force * rest[1], of_torque, of_force)
             half_space, cylinder = free.moments + shear.moments(Q)
         else:
             return (free.moments.sum(axis=0) - (force + torque)) / (of_force + of_torque)
@@ -524,7 +524,7 @@ def steady(
     )
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
     reasons = Diagnosis(loads=loads, states=states, number=count, maximum=maximum, elastic=neutral)
-    found = pack_result(loads, existing, reasons=reasons, scale=scale, labels=labels)
+    found = Steady(loads, existing, reasons=reasons, scale=scale, labels=labels)
     warn_of_contact(roller, found.V if labels is None else np.asarray(found.V))
     return found
 

@@ -201,55 +201,41 @@ _REACTION = "reaction_half_space", "reaction_cylinder", "excess_half_space", "ex
 class Shear(NamedTuple):
     """How shear acts back on the moments at some speeds; all 0 of half-spaces.
 
-    half_space, cylinder : factors a (module) of base and cylinder, (n,) each, dimensionless.
-    half_space_excess, cylinder_excess : excesses e (module), (n,) each, dimensionless.
+    factors : a (module) of base and cylinder, (2, n), dimensionless.
+    excesses : e (module) of base and cylinder, (2, n), dimensionless.
     contacts : the law, at a kappa and a mu, numbers or (n,).
     """
 
-    half_space: Floats
-    cylinder: Floats
-    half_space_excess: Floats
-    cylinder_excess: Floats
+    factors: Floats
+    excesses: Floats
     contacts: Contacts
 
     def moments(self, Q: Floats) -> Floats:
         """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
-        used = np.abs(Q) / self.contacts.mu
-        by_base = self.half_space + self.half_space_excess * used
-        by_cylinder = self.cylinder + self.cylinder_excess * used
-        return -Q * np.array([by_base, by_cylinder])
+        return -Q * (self.factors + self.excesses * (np.abs(Q) / self.contacts.mu))
 
-    def traction_of_force(self, rest: Floats) -> Floats:
-        """Return the Q with Q (1 + a_b + e_b |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(
-            1.0 + self.half_space, self.half_space_excess / self.contacts.mu, rest
-        )
+    def traction(self, rest: Floats, of_axis: float = 0.0, of_spin: float = 0.0) -> Floats:
+        """Return the Q of equilibrium, (n,), from a sum of the balances (module).
 
-    def traction_of_torque(self, rest: Floats) -> Floats:
-        """Return the Q with Q (1 - a_c - e_c |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.contacts.mu, rest)
+        They are Q (1 + a_b + e_b |Q|/mu) = r_f of the axis, and Q (1 - a_c - e_c |Q|/mu) = r_q of
+        the cylinder, with r_f = M_b - f and r_q = q - M_c.  With gains G_f and G_q on omega the
+        right sides are r_f - G_f omega and r_q + G_q omega: G_q times the first plus G_f times the
+        second has no omega.
 
-    def traction_of_both(
-        self, on_axis: Floats, on_spin: Floats, of_force: float, of_torque: float
-    ) -> Floats:
-        """Return the Q of equilibrium, (n,), where both loads have a gain on omega, without omega.
-
-        With gains G_f and G_q the two equations (module) are Q (1 + a_b + e_b |Q|/mu) = r_f - G_f
-        omega and Q (1 - a_c - e_c |Q|/mu) = r_q + G_q omega.  G_q times the first plus G_f times
-        the second has no omega.
-
-        on_axis, on_spin : r_f = M_b - f and r_q = q - M_c at omega = 0, (n,); values at any other
-            omega, the same in both, give the same Q.
-        of_force, of_torque : G_f and G_q.
+        rest : sum of the right sides with both factors, (n,); with gains at any omega, the same in
+            both.
+        of_axis, of_spin : factors of both balances.
         Raises ParameterError where more than one Q balances.
         """
-        factor = of_torque * (1.0 + self.half_space) + of_force * (1.0 - self.cylinder)
-        excess = of_torque * self.half_space_excess - of_force * self.cylinder_excess
-        if np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
-            raise _cancelling_error(of_force, of_torque)
-        side = np.sign(factor)
-        rest = side * (of_torque * on_axis + of_force * on_spin)
-        return _solve_quadratic(np.abs(factor), side * excess / self.contacts.mu, rest)
+        factor = of_axis * (1.0 + self.factors[0]) + of_spin * (1.0 - self.factors[1])
+        excess = of_axis * self.excesses[0] - of_spin * self.excesses[1]
+        if of_axis and of_spin and np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
+            raise _cancelling_error(of_spin, of_axis)
+        # the root of Q (factor + excess |Q|/mu) = rest that is continuous with excess = 0, in a
+        # form without cancellation
+        steep = 4.0 * excess * np.sign(factor) / self.contacts.mu * np.abs(rest)
+        root = np.sqrt(np.maximum(factor * factor + steep, 0.0))
+        return 2.0 * rest / (factor + np.copysign(root, factor))
 
     def slopes_at_rest(self, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return how a small speed changes the balance of a cylinder at rest under a traction.
@@ -260,8 +246,9 @@ class Shear(NamedTuple):
         """
         law, kappa, mu = self.contacts
         used = np.abs(Q) / mu
-        on_axis = 1.0 + self.half_space + 2.0 * self.half_space_excess * used
-        on_spin = 1.0 - self.cylinder - 2.0 * self.cylinder_excess * used
+        by_base, by_cylinder = self.factors + 2.0 * self.excesses * used
+        on_axis = 1.0 + by_base
+        on_spin = 1.0 - by_cylinder
         if law.cover is None:
             # M/V of both at rest, power 0 of the first row
             half_space, cylinder = law.coefficients[0, 0, 2:4, None] * np.ones(Q.size)
@@ -281,18 +268,6 @@ class Shear(NamedTuple):
             half_space + (on_axis - 1.0) * over_V,
             cylinder + (1.0 - on_spin) * over_V,
         )
-
-
-def _solve_quadratic(factor: Floats, excess: Floats, rest: Floats) -> Floats:
-    """Return the solution y of y (factor + excess |y|) = rest, (n,), dimensionless.
-
-    Of several it is the one that goes to 0 with ``rest``.  Where ``excess`` < 0 and |rest| is above
-    the largest value of the left side, it is the y of that value, which is beyond mu.
-
-    factor, excess, rest : coefficients, factor > 0, the others of any sign, (n,).
-    """
-    root = np.sqrt(np.maximum(factor * factor + 4.0 * excess * np.abs(rest), 0.0))
-    return 2.0 * rest / (factor + root)
 
 
 def creep_at_rest(law: LawTable) -> tuple[float, float]:
@@ -333,7 +308,7 @@ def shear_at(contacts: Contacts, V: Floats) -> Shear:
     fields = np.zeros((4, V.size))
     if contacts.law.cover is not None:
         fields = contacts.fields(V, 0.0, *_REACTION)
-    return Shear(*fields, contacts)
+    return Shear(fields[:2], fields[2:], contacts)
 
 
 def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
@@ -421,13 +396,12 @@ def torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Fl
     """
     if contacts.law.coupled is not None:
         delta, unbalanced_force = balance(contacts, V, -force)
-        fields = fields_at(contacts, V, delta)
-        left = torque - contacts.mu * fields["Q_over_mu"] - fields["M_cylinder"] / contacts.kappa
-        return left - unbalanced_force
+        Q, cylinder = contacts.fields(V, delta, "Q", "M_cylinder")
+        return torque - Q - cylinder - unbalanced_force
     shear = shear_at(contacts, V)
     free = contacts.free_creep(V)
     half_space, cylinder = contacts.fields(V, free, "M_half_space", "M_cylinder")
-    Q = shear.traction_of_force(half_space - force)
+    Q = shear.traction(half_space - force, of_axis=1.0)
     return torque - cylinder - shear.moments(Q)[1] - Q
 
 
@@ -522,30 +496,13 @@ def loads_without_omega(
     low, high = contacts.fields(V, 0.0, "delta_minus", "delta_plus")
     for _ in range(_HALVINGS):
         delta = 0.5 * (low + high)
-        fields = fields_at(contacts, V, delta)
-        Q = contacts.mu * fields["Q_over_mu"]
-        half_space = fields["M_half_space"] / contacts.kappa
-        cylinder = fields["M_cylinder"] / contacts.kappa
+        Q, half_space, cylinder = contacts.fields(V, delta, "Q", "M_half_space", "M_cylinder")
         # falls with the creepage, as Q grows
         left = wanted - (Q - axis * half_space + spin * cylinder)
         low = np.where(left > 0.0, delta, low)
         high = np.where(left > 0.0, high, delta)
     # left is rounding, but where no creepage between the onsets balances: what friction lacks
     return Q + left, half_space, cylinder
-
-
-def fields_at(contacts: Contacts, V: Floats, delta: Floats) -> dict[str, Floats]:
-    """Return the fields of a table of the coupled solution at given states.
-
-    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
-    V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
-    Returns name (:data:`FIELDS`) -> values, (n,), dimensionless; moments are multiplied by kappa.
-    """
-    from ..kernels.law.spline_law import look_up
-
-    law, kappa, _ = contacts
-    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
-    return dict(zip(FIELDS, found.T, strict=True))
 
 
 def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
@@ -558,8 +515,12 @@ def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
     Returns moments divided by P R, of base and cylinder, (2, n).
     """
-    _, kappa, mu = contacts
-    fields = fields_at(contacts, V, delta)
+    from ..kernels.law.spline_law import look_up
+
+    law, kappa, mu = contacts
+    # moments are times kappa
+    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
+    fields = dict(zip(FIELDS, found.T, strict=True))
     omega_over_V = 1.0 + delta
     half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
     cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V

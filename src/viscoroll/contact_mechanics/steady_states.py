@@ -33,7 +33,6 @@ from .steady_loads import (
     balance,
     creep_at_rest,
     creep_beyond_free,
-    fields_at,
     moments_of_losses,
     shear_at,
     torque_left,
@@ -181,9 +180,9 @@ class States(NamedTuple):
         still = np.zeros(load.size)
         contacts = Contacts(law, kappa, mu)
         shear = shear_at(contacts, still)
-        Q = shear.traction_of_torque(loads.torque[load])
+        Q = shear.traction(loads.torque[load], of_spin=1.0)
         if loads.given == "force":
-            Q = shear.traction_of_force(-loads.force[load])
+            Q = shear.traction(-loads.force[load], of_axis=1.0)
         part = np.abs(Q) / mu
         rows = np.zeros((_COUNT, load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
@@ -225,10 +224,9 @@ class States(NamedTuple):
         spin = loads.given != "force"
         required = loads.torque[load] if spin else -loads.force[load]
         delta, unbalanced = balance(contacts, still, required, spin)
-        fields = fields_at(contacts, still, delta)
-        Q = mu * fields["Q_over_mu"]
-        half_space = fields["M_half_space"] / kappa
-        cylinder = fields["M_cylinder"] / kappa
+        rows = np.zeros((_COUNT, load.size))
+        rows[Field.Q : Field.BETA + 1] = contacts.fields(still, delta, *_ROWS[:4])
+        Q, half_space, cylinder = rows[Field.Q : Field.BETA]
         gains = loads.gains
         # the loads in balance at this creepage, and their derivatives with respect to V
         force = half_space - Q
@@ -242,10 +240,7 @@ class States(NamedTuple):
         left_of_less_force = torque_left(contacts, still, force - step, torque)
         left_at_rest = torque_left(contacts, still, force, torque)
         dleft_dforce = (left_of_less_force - left_at_rest) / -step
-        rows = np.zeros((_COUNT, load.size))
         rows[Field.DELTA] = np.where(unbalanced == 0.0, delta, np.nan)
-        rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] = Q, half_space, cylinder
-        rows[Field.BETA] = fields["beta"]
         rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
         rows[Field.FAST] = -np.inf
         # the rate at which a small V grows when the creepage of rest is kept
@@ -432,7 +427,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     moments: Any = free[:2]
     if law.cover is not None:
         shear = shear_at(contacts, V)
-        Q = (shear.traction_of_torque if on_spin else shear.traction_of_force)(Q)
+        Q = shear.traction(Q, of_axis=1.0 - on_spin, of_spin=float(on_spin))
         moments = moments + shear.moments(Q)
     elif loads.given is None:  # V is such that both loads balance M
         M = free[0] + free[1]

@@ -246,10 +246,33 @@ class Temperatures(Equilibria):
     _rows = "V", "temperature", "C_rr", "M", "M_half_space", "M_cylinder", "loss", "loss_slip"
     _ranges = "V", "temperature", "C_rr"
 
-    def __init__(self, values: dict[str, Any], reason: Any, labels: Labels | None) -> None:
-        """Keep the fields by name, their ``reason`` and the ``labels`` of the arguments."""
-        super().__init__(values, labels, si=True)
-        self.reason = reason
+    def __init__(
+        self, states: HeatStates, zeros: Zeros, rows: dict[str, Floats], labels: Labels | None
+    ) -> None:
+        """Pad the equilibria of states to arrays (states..., equilibria).
+
+        states: the states of the call.
+        zeros: the equilibria, (m,), unsorted.
+        rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in the loss is
+            dropped, and stated as the reason where no other one is left.
+        labels: labels of the arguments, which the fields get; None without.
+        """
+        low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
+        speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
+        inside = (speed == 0.0) | (speed >= low) & (speed <= high)
+        known = np.isfinite(rows["loss"] + rows["a_T"])
+        reason = _reasons(states, zeros, known=known, inside=inside, rows=rows)
+        order = np.lexsort((zeros.theta, zeros.state))
+        order = order[known[order]]
+        state = zeros.state[order]
+        count = np.bincount(state, minlength=states.load.size)
+        table = np.array([*(rows[name] for name in self._rows), zeros.stable, inside])[:, order]
+        *fields, stable, measured = pad(table, state, count, states.shape)
+        found = dict(zip(self._rows, fields, strict=True))
+        found |= {"stable": stable == 1.0, "measured": measured == 1.0}
+        found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
+        super().__init__(found, labels, si=True)
+        self.reason = reason.reshape(states.shape) if states.shape else reason[0]
 
     def to_xarray(self) -> Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
@@ -376,7 +399,7 @@ def temperature(
         rows = states.fields(zeros.state, zeros.theta, states.V[zeros.state])
     # V a_T: the speed at which the contact at the reference has these rates
     warn_of_contact(roller, rows["V"] * rows["a_T"])
-    return _pack(states, zeros, rows, labels)
+    return Temperatures(states, zeros, rows, labels)
 
 
 def _under_load(
@@ -425,34 +448,6 @@ def _under_load(
     rows["a_T"] = np.where(zeros.theta > states.curve.high, np.nan, a_T)
     rows["C_rr"] = rows["M"] / (states.load * states.R)[n[k]]
     return rows, Zeros(n[k], zeros.theta, zeros.stable & at["stable"][k])
-
-
-def _pack(
-    states: HeatStates, zeros: Zeros, rows: dict[str, Floats], labels: Labels | None
-) -> Temperatures:
-    """Return the result of the equilibria of states, padded to arrays (states..., equilibria).
-
-    states: the states of the call.
-    zeros: the equilibria, (m,), unsorted.
-    rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in the loss is dropped,
-        and stated as the reason where no other one is left.
-    labels: labels of the arguments, which the fields get; None without.
-    """
-    low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
-    speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
-    inside = (speed == 0.0) | (speed >= low) & (speed <= high)
-    known = np.isfinite(rows["loss"] + rows["a_T"])
-    reason = _reasons(states, zeros, known=known, inside=inside, rows=rows)
-    order = np.lexsort((zeros.theta, zeros.state))
-    order = order[known[order]]
-    state = zeros.state[order]
-    count = np.bincount(state, minlength=states.load.size)
-    table = np.array([*(rows[name] for name in Temperatures._rows), zeros.stable, inside])[:, order]
-    *fields, stable, measured = pad(table, state, count, states.shape)
-    found = dict(zip(Temperatures._rows, fields, strict=True))
-    found |= {"stable": stable == 1.0, "measured": measured == 1.0}
-    found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
-    return Temperatures(found, reason.reshape(states.shape) if states.shape else reason[0], labels)
 
 
 def _reasons(
