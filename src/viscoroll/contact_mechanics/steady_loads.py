@@ -237,51 +237,6 @@ class Shear(NamedTuple):
         root = np.sqrt(np.maximum(factor * factor + steep, 0.0))
         return 2.0 * rest / (factor + np.copysign(root, factor))
 
-    def slopes_at_rest(self, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return how a small speed changes the balance of a cylinder at rest under a traction.
-
-        Q : traction at rest, |Q| < mu, (n,).
-        Returns (slopes over Q of the left sides of both equations (module), that of the axis and
-        that of the cylinder; dM_half_space/dV and dM_cylinder/dV at fixed Q), (n,) each.
-        """
-        law, kappa, mu = self.contacts
-        used = np.abs(Q) / mu
-        by_base, by_cylinder = self.factors + 2.0 * self.excesses * used
-        on_axis = 1.0 + by_base
-        on_spin = 1.0 - by_cylinder
-        if law.cover is None:
-            # M/V of both at rest, power 0 of the first row
-            half_space, cylinder = law.coefficients[0, 0, 2:4, None] * np.ones(Q.size)
-            return on_axis, on_spin, half_space, cylinder
-        limit, free = creep_at_rest(law)
-        part = np.where(used < 1.0, used, 0.0)
-        still = np.zeros(Q.size)
-        # at rest |Q|/mu = 1 - (1 - |creep|/delta_star)^2; limit is 2 kappa delta_star/mu, and free
-        # 2 kappa times the creepage of free rolling
-        creep = 0.5 * limit * mu / kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
-        delta = creep_beyond_free(self.contacts, still, creep) + 0.5 * free / kappa
-        names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        half_space, cylinder, over_V = self.contacts.fields(still, delta, *names)
-        return (
-            on_axis,
-            on_spin,
-            half_space + (on_axis - 1.0) * over_V,
-            cylinder + (1.0 - on_spin) * over_V,
-        )
-
-
-def creep_at_rest(law: LawTable) -> tuple[float, float]:
-    """Return 2 kappa delta_star/mu and 2 kappa delta_0 in the limit V -> 0, dimensionless; 1 and 0
-    of half-spaces.
-
-    law : table of the material.
-    """
-    if law.cover is None:
-        return 1.0, 0.0
-    # 2 kappa delta_star/mu and f of base and cylinder, power 0 of the first row
-    limit, half_space, cylinder = law.cover.creep[:3, 0, 0]
-    return float(limit), float(half_space + cylinder)
-
 
 def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
     """Return the creepage of a cover less that of free rolling, delta - delta_0 = delta_star (d + c

@@ -31,7 +31,6 @@ from .steady_loads import (
     Gains,
     Loads,
     balance,
-    creep_at_rest,
     creep_beyond_free,
     moments_of_losses,
     shear_at,
@@ -166,19 +165,17 @@ class States(NamedTuple):
         loads : the loads, dimensionless; all but V and ``shape`` is read.  Q balances the torque,
             or where V and the force were given the force.
         load : index of the load of each state, (n,).
-        law : table of the material, of which T_mean and, of a cover, the rows of creep at rest are
-            read.
+        law : table of the material.
         Returns the :class:`States`, (n,), with V = omega = M = 0: the eigenvalue of slip is -inf,
         the slow one is that of the less stable direction, 0 for elastic bodies without gains; delta
         and omega are NaN where the friction does not suffice, |Q| >= mu.
         """
         if law.coupled is not None:
             return cls._at_rest_on_table(loads, load, law)
-        # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
-        limit, free_limit = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
         still = np.zeros(load.size)
         contacts = Contacts(law, kappa, mu)
+        star, free = contacts.fields(still, 0.0, "delta_star", "delta_0")
         shear = shear_at(contacts, still)
         Q = shear.traction(loads.torque[load], of_spin=1.0)
         if loads.given == "force":
@@ -187,20 +184,27 @@ class States(NamedTuple):
         rows = np.zeros((_COUNT, load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
         # delta_star (1 - sqrt(1 - |Q|/mu)) without cancellation, the creepage of Carter's contact
-        star = 0.5 * limit * mu / kappa * part / (1.0 + beta)
+        star = star * part / (1.0 + beta)
         forth, back = (
-            creep_beyond_free(contacts, still, sign * star) for sign in (np.sign(Q), -np.sign(Q))
+            free + creep_beyond_free(contacts, still, sign * star)
+            for sign in (np.sign(Q), -np.sign(Q))
         )
-        free = 0.5 * free_limit / kappa
         # 0, or NaN where the friction does not suffice
         rows[Field.OMEGA] = 0.0 * beta
-        rows[Field.DELTA] = forth + free
+        rows[Field.DELTA] = forth
         rows[Field.Q] = Q
         rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = shear.moments(Q)
         rows[Field.FAST] = rows[Field.SLOW] = -np.inf
-        on_axis, on_spin, half_space, cylinder = shear.slopes_at_rest(Q)
+        names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
+        half_space, cylinder, over_V = contacts.fields(still, np.nan_to_num(forth), *names)
+        # slopes of the balances over Q, then of the moments over V at fixed Q
+        by_base, by_cylinder = shear.factors + 2.0 * shear.excesses * part
+        on_axis = 1.0 + by_base
+        on_spin = 1.0 - by_cylinder
+        half_space = half_space + by_base * over_V
+        cylinder = cylinder + by_cylinder * over_V
         gains = loads.gains
-        for creep in (free + forth, free + back):  # of motion to either side
+        for creep in (forth, back):  # of motion to either side
             push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
             turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
             rate = on_spin * push + on_axis * turn
