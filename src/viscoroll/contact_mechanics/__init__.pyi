@@ -29,6 +29,7 @@ from .parameters import refuse_arrays as refuse_arrays
 from .parameters import refuse_cover as refuse_cover
 from .parameters import resolve_model as resolve_model
 from .parameters import scale_of as scale_of
+from .rolling_resistance import zeros_between as zeros_between
 from .steady_loads import Loads as Loads
 from .steady_loads import loads_of as loads_of
 from .steady_result import Equilibria as Equilibria

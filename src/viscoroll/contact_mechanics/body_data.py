@@ -102,26 +102,20 @@ def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
     if not pair.like:
         bodies = {"the cylinder": pair.cylinder, "the base": pair.half_space}
     rate = np.abs(V) / length
-    soft = {
-        name: 1.0
-        / (body.storage(rate) * _modulus_over_shear(body.nu, data.plane) / (2.0 * (1.0 + body.nu)))
-        for name, body in bodies.items()
-    }
+    G = {name: body.storage(rate) / (2.0 * (1.0 + body.nu)) for name, body in bodies.items()}
     # compliances 1/E* of both bodies: the peak pressure is E* a/(2 R) with the sum of both
-    whole = (2.0 if pair.like else 1.0) * sum(soft.values())
+    whole = (2.0 if pair.like else 1.0) * sum(
+        1.0 / (G[name] * _modulus_over_shear(body.nu, data.plane)) for name, body in bodies.items()
+    )
     found = {}
     for name, body in bodies.items():
         if body.is_rigid:
             continue
-        found[name] = (
-            SHEAR * slenderness * _modulus_over_shear(body.nu, data.plane) * soft[name] / whole
-        )
+        found[name] = SHEAR * slenderness / (G[name] * whole)
         if body.thickness is not None:
-            G = body.storage(rate) / (2.0 * (1.0 + body.nu))
-            table = _layer_shear(body.nu)
-            part = np.interp(0.5 * length / body.thickness, _THETA, table)
+            part = np.interp(0.5 * length / body.thickness, _THETA, _layer_shear(body.nu))
             # the peak of the elliptic pressure of the load is 4 P/(pi length)
-            found[name] = part * 4.0 * load / (math.pi * length * G)
+            found[name] = part * 4.0 * load / (math.pi * length * G[name])
     return found
 
 
@@ -177,17 +171,10 @@ def _layer_terms(s: Floats, nu: float) -> tuple[Floats, Floats]:
     nu: Poisson's ratio of the layer.
     Returns (B, D), (n,) each, dimensionless.
     """
-    cosh = np.cosh(s)
-    sinh = np.sinh(s)
-    # (1 - nu) f'' + nu k^2 f = 0 and (1 - nu) f''' = (2 - nu) k^2 f' at z = h, rows over B and D
-    u_B = s * cosh + (1.0 - 2.0 * nu) * sinh
-    u_D = s * sinh + 2.0 * (1.0 - nu) * cosh
-    w_B = (1.0 - nu) * (2.0 * cosh + s * sinh) - (2.0 - nu) * s * sinh
-    w_D = (1.0 - nu) * (3.0 * sinh + s * cosh) - (2.0 - nu) * (sinh + s * cosh)
-    u_A = cosh
-    w_A = (1.0 - nu) * sinh - (2.0 - nu) * sinh
-    det = u_B * w_D - u_D * w_B
-    return (-u_A * w_D + u_D * w_A) / det, (-u_B * w_A + u_A * w_B) / det
+    # of (1 - nu) f_zz + nu k^2 f = 0 and (1 - nu) f_zzz = (2 - nu) k^2 f_z at z = h
+    own = (1.0 - 2.0 * nu) * np.sinh(s) ** 2 + 2.0 * (1.0 - nu) * np.cosh(s) ** 2
+    det = ((1.0 - 2.0 * nu) * np.sinh(s)) ** 2 - (2.0 * (1.0 - nu) * np.cosh(s)) ** 2 - s * s
+    return (s - (1.5 - 2.0 * nu) * np.sinh(2.0 * s)) / det, own / det
 
 
 # --- The bodies of a cylinder ---

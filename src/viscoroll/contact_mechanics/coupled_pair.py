@@ -27,10 +27,10 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import exp1, expi
 
-from ..core import Floats, ParameterError
+from ..core import ConvergenceError, Floats, ParameterError
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
-from ..laws import layer_nodes
+from ..laws import half_line_rule, layer_excess, layer_nodes, local_coupling
 from ..materials import Bodies, series_of_alpha
 
 # --- Kernels of the boundary elements at one speed ---
@@ -160,6 +160,16 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     return k, phases, excess / (np.pi * thickness)
 
 
+def _compliance(instant: float, modes: list[tuple[float, float]], k: Floats) -> Any:
+    """Return the compliance under waves of the wave numbers ``k``, complex, (n,), of a body whose
+    compliance at rest is 1; ``instant``, ``modes``: as of :meth:`CoupledBody.at_speed`.
+    """
+    compliance = np.full(k.size, complex(instant))
+    for strength, length in modes:
+        compliance += strength / (1.0 - 1j * k * length)
+    return compliance
+
+
 def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float, float]]) -> Floats:
     """Return what a bonded layer adds to the kernels of a half-space (module), by integrals over
     the wave number with the complex compliance.
@@ -171,9 +181,7 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
     :func:`_fit`, without terms linear in x.
     """
     k, phases, excess = _phases(nu, thickness)
-    compliance = np.full(k.size, complex(instant))
-    for strength, length in modes:
-        compliance += strength / (1.0 - 1j * k * length)
+    compliance = _compliance(instant, modes, k)
     # columns 0 to 2 are those of L - 1, T - 1 and C with the real part of the compliance, 3 to 5
     # with the imaginary part; the coupling, without -i sgn(k), takes them the other way round
     weights = np.concatenate([excess * compliance.real, excess * compliance.imag]).T
@@ -211,12 +219,7 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     Returns the :class:`BodyKernels`.
     """
     size, fit = _fit()
-    instant = 1.0 if u == 0.0 else body.instant
-    modes = (
-        []
-        if u == 0.0 or math.isinf(u)
-        else [(J, T * u) for J, T in zip(body.J, body.T, strict=True)]
-    )
+    instant, modes = body.at_speed(u)
     values = np.zeros((2, 3, size.size))
     for row, sign in enumerate((1.0, -1.0)):
         normal, coupling = _half_space(instant, modes, sign * size)
@@ -269,6 +272,15 @@ def edge_layer(bodies: Any, u: float) -> float:
     return float(steep[0]) if steep.size else math.inf
 
 
+def _element_points(nodes: Floats) -> tuple[Floats, Floats]:
+    """Return points and weights of Gauss's rule in each element between ascending nodes, (m,)
+    each, in the unit of ``nodes``, (n,).
+    """
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    halves = 0.5 * np.diff(nodes)[:, np.newaxis]
+    return (nodes[:-1, np.newaxis] + halves * (1.0 + points)).ravel(), (halves * weights).ravel()
+
+
 def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
     """Return the Fourier transform int f(x) exp(-i k x) dx of a function f that is linear between
     nodes.
@@ -277,13 +289,8 @@ def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
     k: wave numbers times l0, (m,).
     Returns complex numbers, (m,), in the unit of f, by Gauss's rule in each element.
     """
-    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    lengths = np.diff(nodes)
-    part = 0.5 * (1.0 + points)
-    x = nodes[:-1, np.newaxis] + lengths[:, np.newaxis] * part
-    f = values[:-1, np.newaxis] * (1.0 - part) + values[1:, np.newaxis] * part
-    f = f * (0.5 * weights) * lengths[:, np.newaxis]
-    return np.exp(-1j * np.multiply.outer(k, x.ravel())) @ f.ravel()
+    x, weights = _element_points(nodes)
+    return np.exp(-1j * np.multiply.outer(k, x)) @ (np.interp(x, nodes, values) * weights)
 
 
 def layer_transforms(nu: float, u: Floats) -> Floats:
@@ -293,13 +300,8 @@ def layer_transforms(nu: float, u: Floats) -> Floats:
     u: wave numbers times the thickness, > 0, (n,).
     Returns L and T divided by those of a half-space, and C, dimensionless, (3, n).
     """
-    kap = 3.0 - 4.0 * nu
-    decay = np.exp(-2.0 * u)
-    denominator = kap * (1.0 + decay**2) + (4.0 * u**2 + 1.0 + kap**2) * decay
-    mean = kap * (1.0 - decay**2)
-    swing = 4.0 * u * decay
-    C = (kap * (kap - 1.0) * (1.0 - decay) ** 2 - 8.0 * u**2 * decay) / ((kap + 1.0) * denominator)
-    return np.array([(mean - swing) / denominator, (mean + swing) / denominator, C])
+    L, shear, C = layer_excess(nu, u)
+    return np.array([1.0 + L, 1.0 + L + shear, local_coupling(nu) + C])
 
 
 def depth(bodies: Any, u: float, profile: Any) -> float:
@@ -316,29 +318,20 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
     at their first touch.
     """
     half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
-    # integrals over k > 0 by equal steps in s, with k = ln(1 + e^s)/half and weights dk
-    s = np.arange(*_WAVES)
-    k = np.logaddexp(0.0, s) / half
-    weights = (_WAVES[2] / half) / (1.0 + np.exp(-s))
+    k, weights = half_line_rule(_WAVES[2], 1.0 / half, _WAVES[:2])
     p = transforms(profile.nodes, profile.p, k)
     q = transforms(profile.nodes, profile.q, k)
     total = 0.0
     for body in bodies:
-        compliance = np.full(k.size, complex(body.instant))
-        for strength, time in zip(body.J, body.T, strict=True):
-            with np.errstate(over="ignore", invalid="ignore"):
-                compliance += strength / (1.0 - 1j * k * (time * u)) if math.isfinite(u) else 0.0
+        instant, modes = body.at_speed(u)
+        compliance = _compliance(instant, modes, k)
         L, _, C = layer_transforms(body.nu, k * body.thickness)
         work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
         total += body.share * float(weights @ work.real) / np.pi
-    # int p x^2 dx by Simpson's rule, exact as p is linear in each element
-    middle = 0.5 * (profile.nodes[:-1] + profile.nodes[1:])
-    lengths = np.diff(profile.nodes)
-    ends = profile.p * (profile.nodes + profile.shift) ** 2
-    centre = 0.5 * (profile.p[:-1] + profile.p[1:]) * (middle + profile.shift) ** 2
-    square = float(lengths @ (ends[:-1] + 4.0 * centre + ends[1:])) / 6.0
-    load = float(np.trapezoid(profile.p, profile.nodes))
-    return (total + 0.5 * square) / load
+    x, weights = _element_points(profile.nodes)
+    pressure = np.interp(x, profile.nodes, profile.p) * weights
+    square = pressure @ (x + profile.shift) ** 2
+    return float((total + 0.5 * square) / pressure.sum())
 
 
 # --- Steady rolling with pressure and shear solved together ---
@@ -353,6 +346,15 @@ _FREE_CREEP_ERROR = 1e-9
 _UNLAYERED = 1e-3
 #: Coupling that counts as rounding, divided by the largest kernel.
 _ROUNDING = 1e-14
+
+
+#: What each status of the kernels says.
+_REASONS = {
+    1: "no zones of stick and slip satisfy Coulomb's law",
+    2: "the pressure is negative in a part of the contact",
+    3: "no contact length bears the load",
+    4: "a matrix is singular",
+}
 
 
 class CoupledBody(NamedTuple):
@@ -383,10 +385,19 @@ class CoupledBody(NamedTuple):
         """Instantaneous compliance divided by the long-time one, >= 0."""
         return max(1.0 - math.fsum(self.J), 0.0)
 
+    def at_speed(self, u: float) -> tuple[float, list[tuple[float, float]]]:
+        """Return the instantaneous compliance at kappa |V| = ``u``, and strength and length of each
+        mode, in l0; the bodies are elastic for u = 0 and u infinite.
+        """
+        if u == 0.0:
+            return 1.0, []
+        elastic = math.isinf(u)
+        return self.instant, [] if elastic else [(J, T * u) for J, T in zip(self.J, self.T)]
+
     @property
     def local(self) -> float:
         """Coupling of its surface as a half-space, (1 - 2 nu)/(2 - 2 nu)."""
-        return (1.0 - 2.0 * self.nu) / (2.0 - 2.0 * self.nu)
+        return local_coupling(self.nu)
 
 
 class CoupledPair(NamedTuple):
@@ -644,3 +655,19 @@ class CoupledRow:
             q=q * unit,
             status=int(out[8]),
         )
+
+
+def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
+    """Raise ConvergenceError for the first state whose status is not 0; else do nothing.
+
+    status: status of the kernels for each state, (n,).
+    creeps: reduced creepages 2 kappa delta, (n,).
+    u, mu: kappa |V| and coefficient of friction of the states, for the message.
+    """
+    for code, creep in zip(np.asarray(status, int), creeps, strict=True):
+        if code:
+            state = (
+                f"kappa |V| = {u:g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = {creep:g}"
+            )
+            problem = f"contact by method 'coupled': {_REASONS[int(code)]} at {state}"
+            raise ConvergenceError(f"{problem}; please report it")

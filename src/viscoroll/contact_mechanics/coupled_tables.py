@@ -24,7 +24,6 @@ from typing import Any
 import numpy as np
 
 from ..core import (
-    ConvergenceError,
     Floats,
     ParameterError,
     check_integer,
@@ -37,7 +36,7 @@ from ..kernels.numerics.jit import sources_digest
 from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade
 from ..materials import lock_array
 from .assumptions import DUNDURS_LIMIT
-from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth
+from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth, refuse_unsolved
 
 # --- Tables of the coupled solution ---
 
@@ -203,7 +202,11 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
         if friction <= _STICKS:
             middle = free
             fields = _row_fields(row, middle, t)
-            _hold_rest(fields, t.size // 2)
+            # nothing slips there, and Q and M are 0 exactly: errors of the solution, up to 5e-5 of
+            # mu P, are larger than all loads of a slow motion, which they would drive
+            rest = t.size // 2
+            fields[rest, 0] = 0.0
+            _shift_moments(fields, -fields[rest, 1:3])
         else:
             sides = {body.side for body in row.pair.bodies}
             _hold_friction(t, fields, place=place, friction=friction, sides=sides)
@@ -217,20 +220,6 @@ def _row_fields(row: CoupledRow, middle: float, t: Floats) -> Floats:
     low, high = row.onsets()
     creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
     return _fields(row.states(creeps, t), creeps, row.u, row.mu)
-
-
-def _hold_rest(fields: Floats, middle: int) -> None:
-    """Correct an elastic row so that in free rolling, where nothing slips, Q and M are 0 exactly.
-
-    Errors of the solution there, up to 5e-5 mu P, are larger than all loads of a slow motion, which
-    they would drive.
-    fields: fields of the row, (m, 8), of which Q/mu at one node, M and the work of both bodies are
-    changed.
-    middle: number of the node of free rolling.
-    Returns None.
-    """
-    fields[middle, 0] = 0.0
-    _shift_moments(fields, -fields[middle, 1:3])
 
 
 def _hold_friction(
@@ -273,15 +262,7 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
     Returns (n, 8), columns in the order of :data:`FIELDS`, dimensionless.
     Raises ConvergenceError for the first state that is not solved.
     """
-    if not states.converged.all():
-        n = int(np.argmin(states.converged))
-        where = (
-            f"kappa |V| = {u:.6g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = "
-            f"{creeps[n]:.6g}"
-        )
-        raise ConvergenceError(
-            f"coupled solution: no contact was found at {where}; please report it"
-        )
+    refuse_unsolved(states.status, creeps, u, mu)
     return np.stack(states[: len(FIELDS)], axis=-1)
 
 

@@ -39,12 +39,8 @@ LEAST_LOAD = 1e-120
 MOST_LOAD = 1e80
 #: range of a gain divided by the longest retardation time
 _GAIN_RANGE = (1e-40, 1e8)
-#: bisections after which a bracket has the width of rounding
-_BISECTIONS = 62
-#: refinements of an interval in which a function approaches 0 and turns back
-_REFINEMENTS = 4
-#: points of such a refinement
-_REFINED_NODES = 33
+#: distance from a zero at which it is found, relative and absolute: rounding
+_ZERO_TOLERANCE = {"xrtol": 1e-15, "xatol": 1e-16}
 
 Function = Callable[[Floats], Floats]
 
@@ -261,7 +257,7 @@ def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
 
 def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
     """Find the zeros of a function between nodes, including pairs of zeros between neighbouring
-    nodes.
+    nodes, as :func:`zeros_between` does.
 
     function : takes points (m,) and returns its values there, (m,).
     nodes : points, ascending, (n,).
@@ -269,71 +265,74 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
         values no larger than it have no sign and are left out, so that with 0 a zero at a node is
         found between its neighbours.
     Returns the zeros, ascending, (zeros,), to the rounding of the nodes; empty if there are none.
-    They are bisected from the changes of sign between nodes.  A pair of zeros without such a change
-    is found if |function| has a minimum at a node and points nearby show the other sign; a zero at
-    which the function touches 0 is not found.
     """
     values = function(nodes)
     signed = np.abs(values) > noise
-    nodes = nodes[signed]
-    values = values[signed]
-    parts = [(nodes, values), *_refine_near_double_roots(function, nodes, values)]
-    brackets = [_sign_changes(*part) for part in parts]
-    low, high, rising = (np.concatenate(each) for each in zip(*brackets, strict=True))
-    for _ in range(_BISECTIONS if low.size else 0):
-        middle = 0.5 * (low + high)
-        # the middle has the sign of the lower end
-        before = (function(middle) > 0.0) != rising
-        low = np.where(before, middle, low)
-        high = np.where(before, high, middle)
-    return np.sort(0.5 * (low + high))
+    _, zeros, _ = zeros_between(
+        lambda x, _: function(x),
+        nodes[np.newaxis, signed],
+        values[np.newaxis, signed],
+        np.broadcast_to(noise, nodes.shape)[signed],
+    )
+    return zeros
 
 
-def _sign_changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
-    """Find the intervals between points in which a function changes its sign.
+def zeros_between(
+    function: Callable[[Floats, Integers], Floats],
+    x: Floats,
+    y: Floats,
+    noise: Floats | float = 0.0,
+) -> tuple[Integers, Floats, Booleans]:
+    r"""Find the zeros of several functions between their nodes, including pairs of zeros between
+    neighbouring nodes.
 
-    x: points, ascending, (n,).
-    y: values of the function there, (n,); an interval with the value 0 at an end counts as none.
-    Returns (lower ends, upper ends, whether the function rises), (intervals,) each.
+    A zero lies where a function changes its sign between two nodes.  Two zeros between neighbouring
+    nodes are found where \|y\| has a minimum at a node near which a parabola reaches 0, and the
+    function has the other sign at the extremum there; zeros at which it only touches 0 are not
+    found.
+
+    function : takes points and the index of the function of each, (m,) each, and returns the
+        values, (m,).
+    x : nodes, ascending along the last axis, (functions, nodes); an extremum that separates two
+        zeros takes the place of its node.
+    y : values at the nodes, none of them 0, (functions, nodes), changed likewise.
+    noise : rounding error of the values, absolute, broadcast with y: no smaller value at an
+        extremum counts as one of the other sign.
+    Returns (index of the function; zero, by function and ascending, to the rounding of x; whether
+    the function falls there), (zeros,) each.
     """
-    at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)
-    return x[at], x[at + 1], y[at + 1] > 0.0
+    from scipy.optimize.elementwise import find_minimum, find_root
+
+    n, k = _extrema(y)
+    if n.size:
+        sign = np.sign(y[n, k])
+        found = find_minimum(
+            lambda x, n, sign: sign * function(x, n),
+            (x[n, k - 1], x[n, k], x[n, k + 1]),
+            args=(n, sign),
+        )
+        other = found.f_x < -np.broadcast_to(noise, y.shape)[n, k]
+        n = n[other]
+        k = k[other]
+        x[n, k] = found.x[other]
+        y[n, k] = (sign * found.f_x)[other]
+    positive = y > 0.0
+    n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
+    found = find_root(function, (x[n, k], x[n, k + 1]), args=(n,), tolerances=_ZERO_TOLERANCE)
+    # a node whose value is rounding may have the other sign here: the zero is at that node
+    return n, np.where(found.success, found.x, found.bracket[0]), positive[n, k]
 
 
-def _refine_near_double_roots(
-    function: Function, x: Floats, y: Floats
-) -> list[tuple[Floats, Floats]]:
-    """Find points that separate two zeros between the neighbours of a node, where the nodes show no
-    change of sign.
+def _extrema(y: Floats) -> tuple[Integers, Integers]:
+    r"""Return the nodes at which \|y\| has a minimum near which a parabola through three nodes
+    reaches 0; y has one sign at the three, of which rounding errors have no such parabola.
 
-    Candidates are the nodes with a local minimum of |function| near which a parabola through three
-    nodes passes 0, the first and the last node excepted.  The interval around each is divided into
-    32 and narrowed around the point nearest to the other sign, four times at most.
-    function : takes points (m,) and returns its values there, (m,).
-    x, y : nodes, ascending, and values of the function there, none of them 0, (n,); n may be 0.
-    Returns a list of (points, values), (33,) each, one for each pair of zeros that was separated:
-    the values have one sign at both ends and the other one between them.  Empty if none was; zeros
-    that only touch 0 are not found.
+    y: values of functions, (functions, nodes).
+    Returns (rows, columns) of these nodes, (m,) each.
     """
     size = np.abs(y)
-    sign = np.sign(y)
-    minimum = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
-    minimum &= (sign[1:-1] == sign[:-2]) & (sign[1:-1] == sign[2:])
-    # A parabola through three nodes reaches 0 between them if its second difference exceeds the
-    # value at the node; rounding errors have no such difference.
-    minimum &= size[1:-1] < size[:-2] - 2.0 * size[1:-1] + size[2:]
-    found = []
-    for n in np.flatnonzero(minimum) + 1:
-        low = x[n - 1]
-        high = x[n + 1]
-        for _ in range(_REFINEMENTS):
-            points = np.linspace(low, high, _REFINED_NODES)
-            values = function(points)
-            # nearest to the other sign; not an end, so that a point is left on either side
-            least = int(np.clip(np.argmin(values * sign[n]), 1, _REFINED_NODES - 2))
-            if values[least] * sign[n] < 0.0:
-                found.append((points, values))
-                break
-            low = points[least - 1]
-            high = points[least + 1]
-    return found
+    before, at, after = (size[:, k : y.shape[1] - 2 + k] for k in range(3))
+    near = (at <= before) & (at <= after) & (at < np.abs(np.diff(y, 2)))
+    one_sign = np.diff(np.sign(y), axis=1) == 0.0
+    n, k = (near & one_sign[:, 1:] & one_sign[:, :-1]).nonzero()
+    return n, k + 1

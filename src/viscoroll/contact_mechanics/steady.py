@@ -12,7 +12,7 @@ determines omega for every V.  The other equation has one unknown, V:
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
 
 Of covers M depends on Q too.  qw times the equation of the axis less fw times that of the cylinder
-has no omega and gives Q for every V (:meth:`.steady_loads.Shear.traction_of_both`); either equation
+has no omega and gives Q for every V (:meth:`.steady_loads.Shear.traction`); either equation
 then gives omega, and R is the same.
 
 R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V
@@ -61,7 +61,7 @@ from .steady_loads import (
     search_nodes,
     shear_at,
 )
-from .steady_result import Diagnosis, Steady, pack_result
+from .steady_result import Diagnosis, Steady
 from .steady_states import (
     Field,
     States,
@@ -91,15 +91,13 @@ class _FreeRolling(NamedTuple):
     """The contact at several speeds, in the frame of the motion, each (n,).
 
     V : speeds, > 0.
-    M, M_half_space, M_cylinder : moment of both bodies and of each, without traction.
+    moments : of base and cylinder, without traction, (2, n).
     slips : omega - V at the onset of full slip with Q = -mu, of free rolling, at which Q = 0, and
         at the onset of full slip with Q = mu, (3, n).
     """
 
     V: Floats
-    M: Floats
-    M_half_space: Floats
-    M_cylinder: Floats
+    moments: Floats
     slips: Floats
 
 
@@ -122,14 +120,10 @@ class _ScanProblem(NamedTuple):
         """
         V = np.exp2(x) / self.contacts.kappa
         delta_0 = self.contacts.free_creep(V)
-        names = "M", "M_half_space", "M_cylinder", "delta_minus", "delta_plus"
-        M, half_space, cylinder, low, high = self.contacts.fields(V, delta_0, *names)
+        names = "M_half_space", "M_cylinder", "delta_minus", "delta_plus"
+        fields = self.contacts.fields(V, delta_0, *names)
         return _FreeRolling(
-            V=V,
-            M=M,
-            M_half_space=half_space,
-            M_cylinder=cylinder,
-            slips=np.stack([low * V, delta_0 * V, high * V]),
+            V=V, moments=fields[:2], slips=V * np.array([fields[2], delta_0 + 0.0 * V, fields[3]])
         )
 
     def loads_at(self, V: Any, omega: Any) -> Floats:
@@ -156,14 +150,11 @@ class _ScanProblem(NamedTuple):
             )
         elif law.cover is not None:
             shear = shear_at(self.contacts, free.V)
-            on_axis = free.M_half_space - force
-            on_spin = torque - free.M_cylinder
-            Q = shear.traction_of_both(on_axis, on_spin, of_force, of_torque)
-            by_base, by_cylinder = shear.moments(Q)
-            half_space = free.M_half_space + by_base
-            cylinder = free.M_cylinder + by_cylinder
+            rest = free.moments - [force, torque]
+            Q = shear.traction(of_torque * rest[0] - of_force * rest[1], of_torque, of_force)
+            half_space, cylinder = free.moments + shear.moments(Q)
         else:
-            return (free.M - (force + torque)) / (of_force + of_torque)
+            return (free.moments.sum(axis=0) - (force + torque)) / (of_force + of_torque)
         # either balance gives the slip; that of the larger gain loses fewer digits
         if abs(of_force) > abs(of_torque):
             return (half_space - force - Q) / of_force
@@ -224,8 +215,7 @@ def scan_states(law: LawTable, loads: Loads) -> States:
             if law.coupled is not None:
                 free = moments_of_losses(contacts, rows[Field.V], rows[Field.DELTA])
             elif law.cover is not None:
-                rolling = problem.free_rolling(np.log2(contacts.kappa * rows[Field.V]))
-                free = np.stack([rolling.M_half_space, rolling.M_cylinder])
+                free = problem.free_rolling(np.log2(contacts.kappa * rows[Field.V])).moments
             parts.append(
                 States.of(
                     loads, np.full(count, n), sign=np.full(count, sign), answers=rows, free=free
@@ -309,7 +299,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     free = problem.free_rolling(nodes)
     # the size of the terms of the balance of the axis, of which its rounding is a fraction
     speeds = [np.ones_like(free.V), free.V, free.V + problem.slip(free)]
-    terms = problem.contacts.mu + free.M_half_space + np.abs(problem.load_rows[0]) @ np.abs(speeds)
+    terms = problem.contacts.mu + free.moments[0] + np.abs(problem.load_rows[0]) @ np.abs(speeds)
     found = find_zeros(
         lambda x: problem.residual(x, problem.slip(problem.free_rolling(x))),
         nodes,
@@ -338,7 +328,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
     for x in np.log2(u[sign > 0.0]):
         free = problem.free_rolling(np.array([x]))
         limit = free.slips[2, 0]
-        rest = free.M_half_space - problem.loads_at(free.V, free.V)[0]  # Q + gain slip
+        rest = free.moments[0] - problem.loads_at(free.V, free.V)[0]  # Q + gain slip
 
         # defaults keep x and limit of this turn
         def residual(part: Floats, x: float = x, limit: float = limit) -> Floats:
@@ -370,28 +360,31 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     of the other sign, within the rounding of V, may be found as two zeros of R: these are refined
     to one state, or dropped.
     """
-    rows, residuals = problem.rows(V, slip)
-    gains = problem.load_rows[:, 1:]
-    (of_V, of_omega) = gains.sum(axis=0)
-    (force_V, force_omega) = gains[0]
+    state = np.array([V, slip])
+    rows, residuals = problem.rows(*state)
+    of_force, of_torque = problem.load_rows[:, 1:]
+    # slopes of both residuals over V and omega by those of the loads, and by those of Q,
+    # M_half_space and M_cylinder
+    by_loads = np.array([-of_force - of_torque, of_force])
+    by_contact = np.array([[0.0, 1.0, 1.0], [1.0, -1.0, 0.0]])
     for _ in range(_NEWTON_STEPS if V.size else 0):
-        # slopes of Q, M_half_space and M_cylinder over V at fixed omega, then over omega.  With
-        # omega = V + slip a slope over the slip is that over omega, one over V at fixed slip is the
-        # sum
-        (a, one, other), (b, one_omega, other_omega) = slopes_at_fixed_omega(rows)
-        sum_slip = one_omega + other_omega - of_omega
-        sum_V = one + other + (one_omega + other_omega) - of_V - of_omega
-        rest_slip = b - one_omega + force_omega
-        rest_V = a + b - (one + one_omega) + force_V + force_omega
-        det = sum_V * rest_slip - sum_slip * rest_V
+        over_V, over_omega = slopes_at_fixed_omega(rows)
+        # with omega = V + slip a slope over the slip is that over omega, one over V at fixed slip
+        # is the sum
+        over_slip = by_contact @ over_omega + by_loads[:, 1:]
+        over_V = by_contact @ over_V + by_loads[:, :1] + over_slip
         with np.errstate(divide="ignore", invalid="ignore"):
-            dV = (residuals[0] * rest_slip - residuals[1] * sum_slip) / det
-            dslip = (residuals[1] * sum_V - residuals[0] * rest_V) / det
-        good = np.isfinite(dslip) & (np.abs(dV) < 1e-3 * V)
-        new = np.where(good, [V - dV, slip - dslip], [V, slip])
+            step = np.array(
+                [
+                    residuals[0] * over_slip[1] - residuals[1] * over_slip[0],
+                    residuals[1] * over_V[0] - residuals[0] * over_V[1],
+                ]
+            ) / (over_V[0] * over_slip[1] - over_slip[0] * over_V[1])
+        good = np.isfinite(step[1]) & (np.abs(step[0]) < 1e-3 * state[0])
+        new = np.where(good, state - step, state)
         new_rows, new_residuals = problem.rows(*new)
         better = good & (np.abs(new_residuals).sum(axis=0) < np.abs(residuals).sum(axis=0))
-        V, slip = np.where(better, new, [V, slip])
+        state = np.where(better, new, state)
         rows = np.where(better, new_rows, rows)
         residuals = np.where(better, new_residuals, residuals)
     V = rows[Field.V]
@@ -531,7 +524,7 @@ def steady(
     )
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
     reasons = Diagnosis(loads=loads, states=states, number=count, maximum=maximum, elastic=neutral)
-    found = pack_result(loads, existing, reasons=reasons, scale=scale, labels=labels)
+    found = Steady(loads, existing, reasons=reasons, scale=scale, labels=labels)
     warn_of_contact(roller, found.V if labels is None else np.asarray(found.V))
     return found
 

@@ -201,111 +201,41 @@ _REACTION = "reaction_half_space", "reaction_cylinder", "excess_half_space", "ex
 class Shear(NamedTuple):
     """How shear acts back on the moments at some speeds; all 0 of half-spaces.
 
-    half_space, cylinder : factors a (module) of base and cylinder, (n,) each, dimensionless.
-    half_space_excess, cylinder_excess : excesses e (module), (n,) each, dimensionless.
+    factors : a (module) of base and cylinder, (2, n), dimensionless.
+    excesses : e (module) of base and cylinder, (2, n), dimensionless.
     contacts : the law, at a kappa and a mu, numbers or (n,).
     """
 
-    half_space: Floats
-    cylinder: Floats
-    half_space_excess: Floats
-    cylinder_excess: Floats
+    factors: Floats
+    excesses: Floats
     contacts: Contacts
 
     def moments(self, Q: Floats) -> Floats:
         """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
-        used = np.abs(Q) / self.contacts.mu
-        by_base = self.half_space + self.half_space_excess * used
-        by_cylinder = self.cylinder + self.cylinder_excess * used
-        return np.stack([-Q * by_base, -Q * by_cylinder])
+        return -Q * (self.factors + self.excesses * (np.abs(Q) / self.contacts.mu))
 
-    def traction_of_force(self, rest: Floats) -> Floats:
-        """Return the Q with Q (1 + a_b + e_b |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(
-            1.0 + self.half_space, self.half_space_excess / self.contacts.mu, rest
-        )
+    def traction(self, rest: Floats, of_axis: float = 0.0, of_spin: float = 0.0) -> Floats:
+        """Return the Q of equilibrium, (n,), from a sum of the balances (module).
 
-    def traction_of_torque(self, rest: Floats) -> Floats:
-        """Return the Q with Q (1 - a_c - e_c |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.contacts.mu, rest)
+        They are Q (1 + a_b + e_b |Q|/mu) = r_f of the axis, and Q (1 - a_c - e_c |Q|/mu) = r_q of
+        the cylinder, with r_f = M_b - f and r_q = q - M_c.  With gains G_f and G_q on omega the
+        right sides are r_f - G_f omega and r_q + G_q omega: G_q times the first plus G_f times the
+        second has no omega.
 
-    def traction_of_both(
-        self, on_axis: Floats, on_spin: Floats, of_force: float, of_torque: float
-    ) -> Floats:
-        """Return the Q of equilibrium, (n,), where both loads have a gain on omega, without omega.
-
-        With gains G_f and G_q the two equations (module) are Q (1 + a_b + e_b |Q|/mu) = r_f - G_f
-        omega and Q (1 - a_c - e_c |Q|/mu) = r_q + G_q omega.  G_q times the first plus G_f times
-        the second has no omega.
-
-        on_axis, on_spin : r_f = M_b - f and r_q = q - M_c at omega = 0, (n,); values at any other
-            omega, the same in both, give the same Q.
-        of_force, of_torque : G_f and G_q.
+        rest : sum of the right sides with both factors, (n,); with gains at any omega, the same in
+            both.
+        of_axis, of_spin : factors of both balances.
         Raises ParameterError where more than one Q balances.
         """
-        factor = of_torque * (1.0 + self.half_space) + of_force * (1.0 - self.cylinder)
-        excess = of_torque * self.half_space_excess - of_force * self.cylinder_excess
-        if np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
-            raise _cancelling_error(of_force, of_torque)
-        side = np.sign(factor)
-        rest = side * (of_torque * on_axis + of_force * on_spin)
-        return _solve_quadratic(np.abs(factor), side * excess / self.contacts.mu, rest)
-
-    def slopes_at_rest(self, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return how a small speed changes the balance of a cylinder at rest under a traction.
-
-        Q : traction at rest, |Q| < mu, (n,).
-        Returns (slopes over Q of the left sides of both equations (module), that of the axis and
-        that of the cylinder; dM_half_space/dV and dM_cylinder/dV at fixed Q), (n,) each.
-        """
-        law, kappa, mu = self.contacts
-        used = np.abs(Q) / mu
-        on_axis = 1.0 + self.half_space + 2.0 * self.half_space_excess * used
-        on_spin = 1.0 - self.cylinder - 2.0 * self.cylinder_excess * used
-        if law.cover is None:
-            # M/V of both at rest, power 0 of the first row
-            half_space, cylinder = law.coefficients[0, 0, 2:4, None] * np.ones(Q.size)
-            return on_axis, on_spin, half_space, cylinder
-        limit, free = creep_at_rest(law)
-        part = np.where(used < 1.0, used, 0.0)
-        still = np.zeros(Q.size)
-        # at rest |Q|/mu = 1 - (1 - |creep|/delta_star)^2; limit is 2 kappa delta_star/mu, and free
-        # 2 kappa times the creepage of free rolling
-        creep = 0.5 * limit * mu / kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
-        delta = creep_beyond_free(self.contacts, still, creep) + 0.5 * free / kappa
-        names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        half_space, cylinder, over_V = self.contacts.fields(still, delta, *names)
-        return (
-            on_axis,
-            on_spin,
-            half_space + (on_axis - 1.0) * over_V,
-            cylinder + (1.0 - on_spin) * over_V,
-        )
-
-
-def _solve_quadratic(factor: Floats, excess: Floats, rest: Floats) -> Floats:
-    """Return the solution y of y (factor + excess |y|) = rest, (n,), dimensionless.
-
-    Of several it is the one that goes to 0 with ``rest``.  Where ``excess`` < 0 and |rest| is above
-    the largest value of the left side, it is the y of that value, which is beyond mu.
-
-    factor, excess, rest : coefficients, factor > 0, the others of any sign, (n,).
-    """
-    root = np.sqrt(np.maximum(factor * factor + 4.0 * excess * np.abs(rest), 0.0))
-    return 2.0 * rest / (factor + root)
-
-
-def creep_at_rest(law: LawTable) -> tuple[float, float]:
-    """Return 2 kappa delta_star/mu and 2 kappa delta_0 in the limit V -> 0, dimensionless; 1 and 0
-    of half-spaces.
-
-    law : table of the material.
-    """
-    if law.cover is None:
-        return 1.0, 0.0
-    # 2 kappa delta_star/mu and f of base and cylinder, power 0 of the first row
-    limit, half_space, cylinder = law.cover.creep[:3, 0, 0]
-    return float(limit), float(half_space + cylinder)
+        factor = of_axis * (1.0 + self.factors[0]) + of_spin * (1.0 - self.factors[1])
+        excess = of_axis * self.excesses[0] - of_spin * self.excesses[1]
+        if of_axis and of_spin and np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
+            raise _cancelling_error(of_spin, of_axis)
+        # the root of Q (factor + excess |Q|/mu) = rest that is continuous with excess = 0, in a
+        # form without cancellation
+        steep = 4.0 * excess * np.sign(factor) / self.contacts.mu * np.abs(rest)
+        root = np.sqrt(np.maximum(factor * factor + steep, 0.0))
+        return 2.0 * rest / (factor + np.copysign(root, factor))
 
 
 def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
@@ -333,13 +263,7 @@ def shear_at(contacts: Contacts, V: Floats) -> Shear:
     fields = np.zeros((4, V.size))
     if contacts.law.cover is not None:
         fields = contacts.fields(V, 0.0, *_REACTION)
-    return Shear(
-        half_space=fields[0],
-        cylinder=fields[1],
-        half_space_excess=fields[2],
-        cylinder_excess=fields[3],
-        contacts=contacts,
-    )
+    return Shear(fields[:2], fields[2:], contacts)
 
 
 def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
@@ -356,25 +280,27 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     (crossings,) each.
     """
     nodes = search_nodes(law)
-    if law.coupled is None:
-        noise = _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
-        torque_left = _torque_left_of_cover
-    else:
-        noise = np.full(loads.mu.size, _NOISE)
-        torque_left = _torque_left_on_table
-    load = []
-    signs = []
-    speeds = []
+    rounding = _rounding(law, loads)
+    parts = []
     for n, kappa in enumerate(loads.kappa):
         contacts = Contacts(law, kappa, loads.mu[n])
         for sign in (1.0, -1.0):
             # a motion towards -x is the mirror image, under loads of the other sign
             one = loads._replace(force=sign * loads.force[n], torque=sign * loads.torque[n])
-            zeros = find_zeros(partial(torque_left, contacts, one), nodes, noise[n])
-            load.append(np.full(zeros.size, n))
-            signs.append(np.full(zeros.size, sign))
-            speeds.append(np.exp2(zeros) / kappa)  # zeros are log2(kappa V)
-    return np.concatenate(load), np.concatenate(signs), np.concatenate(speeds)
+            zeros = find_zeros(partial(_torque_left_by_speed, contacts, one), nodes, rounding[n])
+            # zeros are log2(kappa V)
+            parts.append(
+                (np.full(zeros.size, n), np.full(zeros.size, sign), np.exp2(zeros) / kappa)
+            )
+    load, signs, speeds = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return load, signs, speeds
+
+
+def _rounding(law: LawTable, loads: Loads) -> Floats:
+    """Return the rounding error of the balances of each load, (n,), dimensionless."""
+    if law.coupled is not None:
+        return np.full(loads.mu.size, _NOISE)
+    return _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
 
 
 def _cancelling_error(of_force: float, of_torque: float) -> ParameterError:
@@ -398,43 +324,49 @@ def search_nodes(law: LawTable) -> Floats:
     return np.linspace(low, high, int(_DENSITY * (high - low)))
 
 
-def _torque_left_of_cover(contacts: Contacts, load: Loads, x: Floats) -> Floats:
-    """Return torque - M_cylinder - Q of a cover, with the Q that balances the force on the axis.
+def _torque_left_by_speed(contacts: Contacts, load: Loads, x: Floats) -> Floats:
+    """Return torque - M_cylinder - Q, with the Q that balances the force on the axis.
 
-    contacts : the law of the cover, at one kappa and one mu.
+    contacts : the law of a cover, or a table, at one kappa and one mu.
     load : one load in the frame where V > 0, whose force and torque are numbers.
     x : log2(kappa V) of each speed, (n,).
-    Returns the torque that is not balanced, divided by P R, (n,); 0 where the cylinder rolls
-    steadily.  The moments without traction are those of the creepage of free rolling, where Q = 0.
-    """
-    V = np.exp2(x) / contacts.kappa
-    shear = shear_at(contacts, V)
-    free = contacts.free_creep(V)
-    half_space, cylinder = contacts.fields(V, free, "M_half_space", "M_cylinder")
-    Q = shear.traction_of_force(half_space - load.force - load.gains.force_V * V)
-    return load.torque + load.gains.torque_V * V - cylinder - shear.moments(Q)[1] - Q
-
-
-def _torque_left_on_table(contacts: Contacts, load: Loads, x: Floats) -> Floats:
-    """Return torque - M_cylinder - Q on a table, with the Q that balances the force on the axis.
-
-    contacts : the table, at one kappa and one mu.
-    load : one load in the frame where V > 0, whose force and torque are numbers.
-    x : log2(kappa V) of each speed, (n,).
-    Returns the torque that is not balanced, divided by P R, (n,), as in :func:`_torque_left`.
+    Returns the torque that is not balanced, divided by P R, (n,), as :func:`torque_left`; 0 where
+    the cylinder rolls steadily.
     """
     V = np.exp2(x) / contacts.kappa
     force = load.force + load.gains.force_V * V
     torque = load.torque + load.gains.torque_V * V
-    return _torque_left(contacts, V, force, torque)
+    return torque_left(contacts, V, force, torque)
+
+
+def torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Floats:
+    """Return torque - M_cylinder - Q, with the Q that balances ``force`` on the axis.
+
+    contacts : the law of a cover, or a table, at a kappa and a mu, numbers or (n,).
+    V : speeds >= 0, dimensionless, (n,).
+    force, torque : loads divided by P and by P R, (n,) each.
+    Returns the torque that is not balanced, divided by P R, (n,).  On a table the part of the force
+    that the friction cannot balance is subtracted too.  The moments of a cover without traction are
+    those of the creepage of free rolling, where Q = 0.
+    """
+    if contacts.law.coupled is not None:
+        delta, unbalanced_force = balance(contacts, V, -force)
+        Q, cylinder = contacts.fields(V, delta, "Q", "M_cylinder")
+        return torque - Q - cylinder - unbalanced_force
+    shear = shear_at(contacts, V)
+    free = contacts.free_creep(V)
+    half_space, cylinder = contacts.fields(V, free, "M_half_space", "M_cylinder")
+    Q = shear.traction(half_space - force, of_axis=1.0)
+    return torque - cylinder - shear.moments(Q)[1] - Q
 
 
 def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     """Return for each load whether V = omega = 0 is a state of equilibrium.
 
     Half-spaces rest where force + torque = 0.  A cover rests where the traction that balances the
-    torque also balances the force on the axis, to rounding.  Whether friction suffices for that
-    traction is considered on a table of the coupled solution only.
+    force on the axis also balances the torque, to rounding; friction may not suffice for it.  On a
+    table the cylinder rests where the torque, in the limit V -> 0 of steady rolling to either side,
+    does not exceed friction and rolling moment.
 
     law : table of the material.
     loads : the loads, dimensionless, of which force and torque are read.
@@ -443,12 +375,12 @@ def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     if law.moment_of_speed_alone:
         return loads.force + loads.torque == 0.0
     contacts = Contacts(law, loads.kappa, loads.mu)
-    if law.coupled is not None:
-        return _rests_on_table(contacts, loads)
-    shear = shear_at(contacts, np.zeros(loads.mu.size))
-    Q = shear.traction_of_torque(loads.torque)
-    rest = Q - shear.moments(Q)[0] + loads.force
-    return np.abs(rest) <= _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
+    still = np.zeros(loads.mu.size)
+    left = [
+        torque_left(contacts, still, sign * loads.force, sign * loads.torque)
+        for sign in (1.0, -1.0)
+    ]
+    return np.maximum(*left) <= _rounding(law, loads)
 
 
 # --- Steady states on a table of the coupled solution ---
@@ -460,8 +392,6 @@ _FAR_OCTAVES = 40
 _DENSITY = 6
 #: rounding of the balance
 _NOISE = 1e-14
-#: speed at which slopes at rest are taken, divided by the first node: there the law is linear in u
-_SLOW = 1e-3
 #: sum of the gains on omega over the sum of their moduli, at or below which they nearly cancel: the
 #: moments change with the creepage by up to some tenths of the traction
 _CANCELLED = 0.3
@@ -521,30 +451,13 @@ def loads_without_omega(
     low, high = contacts.fields(V, 0.0, "delta_minus", "delta_plus")
     for _ in range(_HALVINGS):
         delta = 0.5 * (low + high)
-        fields = fields_at(contacts, V, delta)
-        Q = contacts.mu * fields["Q_over_mu"]
-        half_space = fields["M_half_space"] / contacts.kappa
-        cylinder = fields["M_cylinder"] / contacts.kappa
+        Q, half_space, cylinder = contacts.fields(V, delta, "Q", "M_half_space", "M_cylinder")
         # falls with the creepage, as Q grows
         left = wanted - (Q - axis * half_space + spin * cylinder)
         low = np.where(left > 0.0, delta, low)
         high = np.where(left > 0.0, high, delta)
     # left is rounding, but where no creepage between the onsets balances: what friction lacks
     return Q + left, half_space, cylinder
-
-
-def fields_at(contacts: Contacts, V: Floats, delta: Floats) -> dict[str, Floats]:
-    """Return the fields of a table of the coupled solution at given states.
-
-    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
-    V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
-    Returns name (:data:`FIELDS`) -> values, (n,), dimensionless; moments are multiplied by kappa.
-    """
-    from ..kernels.law.spline_law import look_up
-
-    law, kappa, _ = contacts
-    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
-    return dict(zip(FIELDS, found.T, strict=True))
 
 
 def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
@@ -557,8 +470,12 @@ def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
     Returns moments divided by P R, of base and cylinder, (2, n).
     """
-    _, kappa, mu = contacts
-    fields = fields_at(contacts, V, delta)
+    from ..kernels.law.spline_law import look_up
+
+    law, kappa, mu = contacts
+    # moments are times kappa
+    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
+    fields = dict(zip(FIELDS, found.T, strict=True))
     omega_over_V = 1.0 + delta
     half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
     cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V
@@ -568,80 +485,3 @@ def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     supplied += kappa * mu * delta * fields["Q_over_mu"]
     reduction = np.divide(supplied, lost, out=np.ones_like(lost), where=lost > 0.0)
     return np.clip(reduction, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa
-
-
-def _torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Floats:
-    """Return torque - M_cylinder - Q at the creepages that balance ``force`` on the axis.
-
-    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
-    V : speeds >= 0, dimensionless, (n,).
-    force, torque : loads divided by P and by P R, (n,) each.
-    Returns the torque that is not balanced, divided by P R, (n,).  The part of the force that the
-    friction cannot balance is subtracted too.
-    """
-    _, kappa, mu = contacts
-    delta, unbalanced_force = balance(contacts, V, -force)
-    fields = fields_at(contacts, V, delta)
-    left = torque - mu * fields["Q_over_mu"] - fields["M_cylinder"] / kappa
-    return left - unbalanced_force
-
-
-def _rests_on_table(contacts: Contacts, loads: Loads) -> Booleans:
-    """Return for each load whether the cylinder stays at V = omega = 0.
-
-    It stays where the torque, in the limit V -> 0 of steady rolling to either side, does not exceed
-    friction and rolling moment.
-
-    contacts : the table, at the kappa and mu of the loads, (n,).
-    loads : the loads, dimensionless, of which force and torque are read.
-    Returns booleans, (n,).
-    """
-    still = np.zeros(loads.mu.size)
-    left = [
-        _torque_left(contacts, still, sign * loads.force, sign * loads.torque)
-        for sign in (1.0, -1.0)
-    ]
-    return (left[0] <= _NOISE) & (left[1] <= _NOISE)
-
-
-def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, Floats, Floats]:
-    """Return creepage, fields and decay rate of states at rest, as limits V -> 0 of V > 0.
-
-    law : table with ``coupled`` rows.
-    loads : the loads, dimensionless; feedback gains are allowed.
-    load : index in ``loads`` of the load of each state, int, (n,).
-    Returns three dimensionless arrays: the creepage, (n,), NaN where the friction does not suffice;
-    Q, M_half_space, M_cylinder and beta, (4, n); the rate at which a small V decays, per unit of
-    gamma t, (n,), when the creepage of rest is kept.
-    """
-    kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
-    force = loads.force[load]
-    torque = loads.torque[load]
-    at_rest = np.zeros(load.size)
-    torque_given = loads.given != "force"
-    required = torque if torque_given else -force
-    contacts = Contacts(law, kappa, mu)
-    delta, unbalanced = balance(contacts, at_rest, required, torque_given)
-    fields = fields_at(contacts, at_rest, delta)
-    Q = mu * fields["Q_over_mu"]
-    half_space = fields["M_half_space"] / kappa
-    cylinder = fields["M_cylinder"] / kappa
-    gains = loads.gains
-    # the loads in balance at this creepage, and their derivatives with respect to V
-    force = half_space - Q
-    torque = Q + cylinder
-    dforce_dV = gains.force_V + gains.force_omega * (1.0 + delta)
-    dtorque_dV = gains.torque_V + gains.torque_omega * (1.0 + delta)
-    V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
-    left_at_V = _torque_left(contacts, V, force + dforce_dV * V, torque + dtorque_dV * V)
-    # derivative of the torque left with respect to the force, a difference quotient
-    step = 1e-6 * mu
-    left_of_less_force = _torque_left(contacts, at_rest, force - step, torque)
-    left_at_rest = _torque_left(contacts, at_rest, force, torque)
-    dleft_dforce = (left_of_less_force - left_at_rest) / -step
-    inertia = j * (1.0 + delta) + np.maximum(dleft_dforce, 0.0)
-    return (
-        np.where(unbalanced == 0.0, delta, np.nan),
-        np.stack([Q, half_space, cylinder, fields["beta"]]),
-        -(left_at_V / V) / inertia,
-    )

@@ -175,6 +175,23 @@ class Equilibria(Values):
     _rows: tuple[str, ...]
     _ranges: tuple[str, ...]
 
+    def __init__(self, values: dict[str, Any], labels: Labels | None, *, si: bool) -> None:
+        """Store the equilibria.
+
+        values: field -> array (states..., equilibria), ``count`` without that axis and
+            ``eigenvalues`` with one more.
+        labels: axes and coordinates of the arguments, which the values then get; None without.
+        si: whether the values have SI units.
+        """
+        if labels is not None:
+            axes = {"count": (), "eigenvalues": ("equilibrium", "rate")}
+            values = {
+                name: labels.apply(name, each, *axes.get(name, ("equilibrium",)))
+                for name, each in values.items()
+            }
+        super().__init__(values, title=self._heading, si=si)
+        self._labels = labels
+
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return the title and the rows of the printed report.
 
@@ -276,26 +293,67 @@ class Steady(Equilibria):
 
     def __init__(
         self,
-        values: dict[str, Any],
-        free: Floats,
+        loads: Loads,
+        states: States,
         reasons: Diagnosis,
         scale: Scale,
         labels: Labels | None,
     ) -> None:
-        """Store the equilibria.
+        """Pack steady states, one after another, into arrays over loads and equilibria, in the
+        units of the roller.
 
-        values: field -> array (loads..., equilibria), NaN where a load has fewer equilibria.
-        free: M_half_space and M_cylinder without traction, (2, loads..., equilibria), divided by
-        P R.
-        reasons: why a load has none.
-        scale: units of the roller.
-        labels: axes and coordinates of the arguments, None without.
+        The fields V, delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force, torque and
+        ``stable`` have the shape (loads..., equilibria), of one load (equilibria,), padded with NaN
+        (``stable``: False) where loads have fewer equilibria than others; ``eigenvalues`` have a
+        further axis of two, ``count`` has the axes of the loads alone, an int for one load.  With V
+        given, force or torque is what the balance needs.
+
+        loads : the loads, n of them, dimensionless.
+        states : :class:`.steady_states.States` that exist, sorted by load and |V|, dimensionless.
+        reasons : :class:`Diagnosis`, data of the loads without equilibrium; its ``number`` is the
+            number of states of each load.
+        scale : units of the roller, which the result has.
+        labels : labels of the arguments of the call, or None; arrays of the scene may add axes in
+            front of them.
         """
-        super().__init__(values, title="Steady rolling", si=scale.si)
-        self._free = free
+        number = states.load
+        count = reasons.number
+        gains = loads.gains
+        V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
+        force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
+        torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
+        # with V given: the balance of the axis, and that of the cylinder
+        if loads.given == "torque":
+            force = M_half_space - Q
+        elif loads.given == "force":
+            torque = M_cylinder + Q
+        grip = 1.0 - np.abs(Q) / loads.mu[number]
+        # rows: those of _FIELDS, V to omega from the states; then the moments without traction and
+        # the three of the eigenvalues, which are read below
+        more = np.array(
+            [M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary]
+        )
+        rows = np.concatenate([states.rows[: Field.FAST], more])
+        rows = pad(rows, number, count, loads.shape)
+        found = dict(zip(_FIELDS, rows, strict=False))
+        for name in (found.keys() & DIMENSIONS.keys()) if scale.si else ():
+            unit = scale[name]
+            # in place of append_axis, whose calls take longer here than the rest
+            found[name] = found[name] * (
+                unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
+            )
+        # the unit of all three, 1/s of a cylinder
+        fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
+        eigenvalues = np.empty((*fast.shape, 2), np.complex128)
+        eigenvalues[..., 0] = fast - 1j * imaginary
+        eigenvalues[..., 1] = slow + 1j * imaginary
+        found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
+        found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
+        super().__init__(found, labels, si=scale.si)
+        # without traction, divided by P R
+        self._free = rows[len(_FIELDS) : len(_FIELDS) + 2]
         self.reasons = reasons
         self.scale = scale
-        self._labels = labels
 
     def keys(self) -> Iterable[str]:
         """Return the names of the fields, which are attributes and are read by ``result[name]``
@@ -428,66 +486,3 @@ def pad(rows: Floats, number: Integers, count: Integers, shape: tuple[int, ...])
         padded[:, number * most + place] = rows
         rows = padded
     return rows.reshape(len(rows), *shape, most)
-
-
-def pack_result(
-    loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None
-) -> Steady:
-    """Pack steady states, one after another, into arrays over loads and equilibria, in the units of
-    the roller.
-
-    loads : the loads, n of them, dimensionless.
-    states : :class:`.steady_states.States` that exist, sorted by load and |V|, dimensionless.
-    reasons : :class:`Diagnosis`, data of the loads without equilibrium; its ``number`` is the
-        number of states of each load.
-    scale : units of the roller, which the result has.
-    labels : labels of the arguments of the call, or None; arrays of the scene may add axes in front
-        of them.
-    Returns the :class:`Steady`, whose fields V, delta, Q, M_half_space, M_cylinder, beta, omega, M,
-    grip, force, torque and ``stable`` have the shape (loads..., equilibria), of one load
-    (equilibria,), padded with NaN (``stable``: False) where loads have fewer equilibria than
-    others; ``eigenvalues`` have a further axis of two, ``count`` has the axes of the loads alone,
-    an int for one load.  With V given, force or torque is what the balance needs.
-    """
-    number = states.load
-    count = reasons.number
-    gains = loads.gains
-    V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
-    force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
-    torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
-    # with V given: the balance of the axis, and that of the cylinder
-    if loads.given == "torque":
-        force = M_half_space - Q
-    elif loads.given == "force":
-        torque = M_cylinder + Q
-    grip = 1.0 - np.abs(Q) / loads.mu[number]
-    # rows: those of _FIELDS, V to omega from the states; then the moments without traction and the
-    # three of the eigenvalues, which are read below
-    more = np.array([M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary])
-    rows = np.concatenate([states.rows[: Field.FAST], more])
-    rows = pad(rows, number, count, loads.shape)
-    found = dict(zip(_FIELDS, rows, strict=False))
-    if scale.si:
-        for name in found.keys() & DIMENSIONS.keys():
-            # a unit for each load needs an axis for the equilibria
-            unit = scale[name]
-            per_load = isinstance(unit, np.ndarray)
-            found[name] = found[name] * (unit[..., np.newaxis] if per_load else unit)
-    # the unit of all three, 1/s of a cylinder; one for each load needs an axis for the equilibria
-    fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
-    eigenvalues = np.empty((*fast.shape, 2), np.complex128)
-    eigenvalues.real[..., 0] = fast
-    eigenvalues.real[..., 1] = slow
-    eigenvalues.imag[..., 0] = -imaginary
-    eigenvalues.imag[..., 1] = imaginary
-    found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
-    found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
-    if labels is not None:
-        axes_after = {"count": (), "eigenvalues": ("equilibrium", "rate")}
-        found = {
-            name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",)))
-            for name, each in found.items()
-        }
-    return Steady(
-        found, rows[len(_FIELDS) : len(_FIELDS) + 2], reasons=reasons, scale=scale, labels=labels
-    )

@@ -31,15 +31,17 @@ from .steady_loads import (
     Gains,
     Loads,
     balance,
-    creep_at_rest,
     creep_beyond_free,
     moments_of_losses,
-    rest_on_table,
     shear_at,
+    torque_left,
 )
 
 #: loads of one block of work: some milliseconds
 _BLOCK = 1 << 12
+#: speed at which slopes at rest are taken, divided by the first node of a table: there the law is
+#: linear in u
+_SLOW = 1e-3
 #: |Q|/mu below which delta is computed from its slope at Q = 0
 _SMALL_TRACTION = 1e-8
 #: |Q|/mu below which a Newton step corrects delta, which is a difference there
@@ -140,15 +142,13 @@ class States(NamedTuple):
         rows[Field.FREE_HALF_SPACE :] = (
             answers[[Field.M_HALF_SPACE, Field.M_CYLINDER]] if free is None else free
         )
-        signed = (
-            Field.V,
-            Field.Q,
+        moments = [
             Field.M_HALF_SPACE,
             Field.M_CYLINDER,
             Field.FREE_HALF_SPACE,
             Field.FREE_CYLINDER,
-        )
-        rows[list(signed)] *= sign
+        ]
+        rows[[Field.V, Field.Q, *moments]] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
         # of the frame where V > 0: a mirror image has the same eigenvalues
         rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers, loads.gains, loads.j[load])
@@ -165,41 +165,46 @@ class States(NamedTuple):
         loads : the loads, dimensionless; all but V and ``shape`` is read.  Q balances the torque,
             or where V and the force were given the force.
         load : index of the load of each state, (n,).
-        law : table of the material, of which T_mean and, of a cover, the rows of creep at rest are
-            read.
+        law : table of the material.
         Returns the :class:`States`, (n,), with V = omega = M = 0: the eigenvalue of slip is -inf,
         the slow one is that of the less stable direction, 0 for elastic bodies without gains; delta
         and omega are NaN where the friction does not suffice, |Q| >= mu.
         """
         if law.coupled is not None:
             return cls._at_rest_on_table(loads, load, law)
-        # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
-        limit, free_limit = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
         still = np.zeros(load.size)
         contacts = Contacts(law, kappa, mu)
+        star, free = contacts.fields(still, 0.0, "delta_star", "delta_0")
         shear = shear_at(contacts, still)
-        Q = shear.traction_of_torque(loads.torque[load])
+        Q = shear.traction(loads.torque[load], of_spin=1.0)
         if loads.given == "force":
-            Q = shear.traction_of_force(-loads.force[load])
+            Q = shear.traction(-loads.force[load], of_axis=1.0)
         part = np.abs(Q) / mu
         rows = np.zeros((_COUNT, load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
         # delta_star (1 - sqrt(1 - |Q|/mu)) without cancellation, the creepage of Carter's contact
-        star = 0.5 * limit * mu / kappa * part / (1.0 + beta)
+        star = star * part / (1.0 + beta)
         forth, back = (
-            creep_beyond_free(contacts, still, sign * star) for sign in (np.sign(Q), -np.sign(Q))
+            free + creep_beyond_free(contacts, still, sign * star)
+            for sign in (np.sign(Q), -np.sign(Q))
         )
-        free = 0.5 * free_limit / kappa
         # 0, or NaN where the friction does not suffice
         rows[Field.OMEGA] = 0.0 * beta
-        rows[Field.DELTA] = forth + free
+        rows[Field.DELTA] = forth
         rows[Field.Q] = Q
         rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = shear.moments(Q)
         rows[Field.FAST] = rows[Field.SLOW] = -np.inf
-        on_axis, on_spin, half_space, cylinder = shear.slopes_at_rest(Q)
+        names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
+        half_space, cylinder, over_V = contacts.fields(still, np.nan_to_num(forth), *names)
+        # slopes of the balances over Q, then of the moments over V at fixed Q
+        by_base, by_cylinder = shear.factors + 2.0 * shear.excesses * part
+        on_axis = 1.0 + by_base
+        on_spin = 1.0 - by_cylinder
+        half_space = half_space + by_base * over_V
+        cylinder = cylinder + by_cylinder * over_V
         gains = loads.gains
-        for creep in (free + forth, free + back):  # of motion to either side
+        for creep in (forth, back):  # of motion to either side
             push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
             turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
             rate = on_spin * push + on_axis * turn
@@ -217,12 +222,33 @@ class States(NamedTuple):
         law: table with ``coupled`` rows.
         Returns the :class:`States`, (n,); omega is NaN where the friction does not suffice.
         """
+        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
+        still = np.zeros(load.size)
+        contacts = Contacts(law, kappa, mu)
+        spin = loads.given != "force"
+        required = loads.torque[load] if spin else -loads.force[load]
+        delta, unbalanced = balance(contacts, still, required, spin)
         rows = np.zeros((_COUNT, load.size))
-        rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
-        rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.BETA]] = found
+        rows[Field.Q : Field.BETA + 1] = contacts.fields(still, delta, *_ROWS[:4])
+        Q, half_space, cylinder = rows[Field.Q : Field.BETA]
+        gains = loads.gains
+        # the loads in balance at this creepage, and their derivatives with respect to V
+        force = half_space - Q
+        torque = Q + cylinder
+        dforce_dV = gains.force_V + gains.force_omega * (1.0 + delta)
+        dtorque_dV = gains.torque_V + gains.torque_omega * (1.0 + delta)
+        V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
+        left_at_V = torque_left(contacts, V, force + dforce_dV * V, torque + dtorque_dV * V)
+        # derivative of the torque left with respect to the force, a difference quotient
+        step = 1e-6 * mu
+        left_of_less_force = torque_left(contacts, still, force - step, torque)
+        left_at_rest = torque_left(contacts, still, force, torque)
+        dleft_dforce = (left_of_less_force - left_at_rest) / -step
+        rows[Field.DELTA] = np.where(unbalanced == 0.0, delta, np.nan)
         rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
         rows[Field.FAST] = -np.inf
-        rows[Field.SLOW] = -rate
+        # the rate at which a small V grows when the creepage of rest is kept
+        rows[Field.SLOW] = left_at_V / V / (j * (1.0 + delta) + np.maximum(dleft_dforce, 0.0))
         return cls(load, rows)
 
     @classmethod
@@ -400,23 +426,19 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     delta_0 = contacts.free_creep(V)
     names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     free = contacts.fields(V, delta_0, *names)
-    if law.cover is None:
+    on_spin = loads.given == "torque"
+    Q = torque - free[1] if on_spin else free[0] - force
+    moments: Any = free[:2]
+    if law.cover is not None:
+        shear = shear_at(contacts, V)
+        Q = shear.traction(Q, of_axis=1.0 - on_spin, of_spin=float(on_spin))
+        moments = moments + shear.moments(Q)
+    elif loads.given is None:  # V is such that both loads balance M
         M = free[0] + free[1]
         # part of M by the half-space; one half of elastic bodies, whose M is 0
         share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
-        if loads.given is None:  # V is such that both loads balance M
-            M = force + torque
-            Q = share * torque - (1.0 - share) * force
-        else:
-            Q = torque - (1.0 - share) * M if loads.given == "torque" else share * M - force
-        moments: Any = (share * M, (1.0 - share) * M)
-    else:
-        shear = shear_at(contacts, V)
-        if loads.given == "torque":
-            Q = shear.traction_of_torque(torque - free[1])
-        else:
-            Q = shear.traction_of_force(free[0] - force)
-        moments = free[:2] + shear.moments(Q)
+        Q = share * torque - (1.0 - share) * force
+        moments = share * (force + torque), (1.0 - share) * (force + torque)
     part = np.abs(Q) / mu
     exists = part < 1.0
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))

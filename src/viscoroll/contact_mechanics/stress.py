@@ -18,7 +18,6 @@ from typing import Any, Literal, overload
 import numpy as np
 
 from ..core import (
-    ConvergenceError,
     Floats,
     Numbers,
     ParameterError,
@@ -35,19 +34,11 @@ from ..core import (
 from ..laws import CoverModes, pressure, series_record
 from ..materials import total_series
 from .contact_table import DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
-from .coupled_pair import CoupledPair, CoupledRow, depth
+from .coupled_pair import CoupledPair, CoupledRow, depth, refuse_unsolved
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
 # --- Contacts by method "coupled" ---
-
-#: What each status of the kernels says.
-_REASONS = {
-    1: "no zones of stick and slip satisfy Coulomb's law",
-    2: "the pressure is negative in a part of the contact",
-    3: "no contact length bears the load",
-    4: "a matrix is singular",
-}
 
 
 @lru_cache(maxsize=16)
@@ -63,22 +54,6 @@ def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
     row = CoupledRow(pair, u, mu)
     refuse_unsolved(row.full_slip_status, np.array([-np.inf, np.inf]), u, mu)
     return row
-
-
-def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
-    """Raise ConvergenceError for the first state whose status is not 0; else do nothing.
-
-    status: status of the kernels for each state, (n,).
-    creeps: reduced creepages 2 kappa delta, (n,).
-    u, mu: kappa |V| and coefficient of friction of the states, for the message.
-    """
-    for code, creep in zip(np.asarray(status, int), creeps, strict=True):
-        if code:
-            state = (
-                f"kappa |V| = {u:g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = {creep:g}"
-            )
-            problem = f"contact by method 'coupled': {_REASONS[int(code)]} at {state}"
-            raise ConvergenceError(f"{problem}; please report it")
 
 
 class _States:
@@ -395,22 +370,13 @@ def _stress_of_law(
         else np.arange(len(scene.material_array), dtype=np.float64)
     )
     # first the fields of Points in their order; an array of materials has their indices for alpha
-    arrays = {
-        "x": x,
-        "kappa": scene.kappa,
-        "mu": scene.mu,
-        "lam": lam,
-        "epsilon": epsilon,
-        "beta": beta,
-        "zeta": zeta,
-        "alpha": alpha,
-        "mirror": mirror,
-        "sign": np.sign(delta) * mirror,
-    }
-    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in arrays.items()}
-    shape = broadcast_shape(**arrays)
+    state = (scene.kappa, scene.mu, lam, epsilon, beta, zeta, alpha)
+    arrays = [
+        np.asarray(value, np.float64) for value in (x, *state, mirror, np.sign(delta) * mirror)
+    ]
+    shape = broadcast_shape(x=x, V=arrays[3])  # lam has the shape of the states
     read_x, *readers, read_alpha, read_mirror, read_sign = (
-        block_reader(array, shape) for array in arrays.values()
+        block_reader(array, shape) for array in arrays
     )
     out = np.empty((2, math.prod(shape)))
     p, tau = out

@@ -23,6 +23,7 @@ from .assumptions import (
     assess_creep,
     assess_position,
     assess_small_contact,
+    largest,
 )
 from .contact_table import evaluate_contact
 from .free_rolling import ContactLengths, FreeRolling, Reach, Start
@@ -384,7 +385,7 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
     theta = half / cover.thinnest
     sentence = (
         f"h/l0 = {thickness:.3g}: half the contact length is up to "
-        f"{float(np.max(theta, initial=0.0)):.2g} times the "
+        f"{largest(theta):.2g} times the "
         f"thickness; up to {np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is "
         "allowed, where the contact "
         "sticks in front and slips behind (beyond: method='coupled')"
@@ -435,14 +436,14 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     error = error + _SHEAR_ERROR * np.minimum(value, 1.0)
     levers = np.abs(free) + 0.5 * star * np.minimum(value, 1.0)
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
-    largest = float(np.max(value, initial=0.0))
+    most = largest(value)
     beyond = (
-        f" where the value is at most 1; it is up to {largest:.2g}: above 1 both ends slip, and "
+        f" where the value is at most 1; it is up to {most:.2g}: above 1 both ends slip, and "
         "the law does not hold: use method='coupled'"
     )
     errors = (
-        f"the error of Q is up to {100.0 * np.max(error, initial=0.0):.2g} % of mu P and that of "
-        f"M up to {np.max(error_of_M, initial=0.0):.1g} P l0" + (beyond if largest > 1.0 else "")
+        f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
+        f"M up to {largest(error_of_M):.1g} P l0" + (beyond if most > 1.0 else "")
     )
     if scene.tabulated:
         sentence = (

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +26,7 @@ from ..contact_mechanics import (
     pure_rolling_fields,
     resolve_model,
     warn_of_contact,
+    zeros_between,
 )
 from ..contact_mechanics.steady import steady
 from ..core import (
@@ -59,8 +60,6 @@ from .heated_bodies import (
 
 #: states of a block: arrays over nodes and states then stay in the cache
 _BLOCK = 256
-#: distance from a zero at which it is found, relative, and absolute in K
-_ZERO_TOLERANCE = {"xrtol": 1e-14, "xatol": 1e-15}
 #: No kappa M exceeds this: the pressure acts at most half the contact length at rest ahead of the
 #: axis; twice that, for b_T down to 1/4.
 _MOST = 1.0
@@ -168,10 +167,8 @@ def zeros_of(
 ) -> Zeros:
     """Find all zeros of the balances of states.
 
-    They lie where f (module) changes its sign between two nodes of the temperature.  Two zeros
-    between neighbouring nodes are found where |f| has a minimum at a node near which a parabola
-    reaches 0, and f has the other sign at the extremum there; zeros at which f only touches 0 are
-    not found.
+    Between nodes of the temperature they are found as by
+    :func:`viscoroll.contact_mechanics.rolling_resistance.zeros_between`.
 
     heat: function (indices of states, temperatures) -> heat of the body, W/m, (m,) each.
     curve: shift of the body, which places the nodes.
@@ -179,49 +176,26 @@ def zeros_of(
     hottest: temperature up to which zeros are sought, degrees Celsius, (n,).
     Returns the :class:`Zeros`, to the rounding of f.
     """
-    from scipy.optimize.elementwise import find_minimum, find_root
 
-    def rest(rise: Floats, n: Integers, sign: Any = 1.0) -> Floats:
-        return sign * (heat(n, ambient[n] + rise) / conductance[n] - rise)
+    def rest(first: int, rise: Floats, k: Integers) -> Floats:
+        n = first + k
+        return heat(n, ambient[n] + rise) / conductance[n] - rise
 
     parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
     for first in range(0, ambient.size, _BLOCK):
-        own = np.arange(first, min(first + _BLOCK, ambient.size))
+        balance = partial(rest, first)
+        around = ambient[first : first + _BLOCK]
         # a margin of 1 K, so that a zero at either end lies between nodes
-        nodes = curve.nodes(ambient[own].min() - 1.0, hottest[own].max() + 1.0)
-        rise = nodes - ambient[own, np.newaxis]
-        f = rest(rise.ravel(), np.repeat(own, nodes.size)).reshape(rise.shape)
-        n, k = _extrema(f)
-        if n.size:  # they take the places of their nodes
-            triple = rise[n, k - 1], rise[n, k], rise[n, k + 1]
-            sign = np.sign(f[n, k])
-            found = find_minimum(rest, triple, args=(own[n], sign))
-            rise[n, k] = found.x
-            f[n, k] = sign * found.f_x
-        positive = f > 0.0
-        n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
-        ends = rise[n, k], rise[n, k + 1]
-        found = find_root(rest, ends, args=(own[n],), tolerances=_ZERO_TOLERANCE)
-        # stable where f falls, from a positive node
-        parts.append((own[n], ambient[own[n]] + found.x, positive[n, k]))
+        nodes = curve.nodes(around.min() - 1.0, hottest[first : first + _BLOCK].max() + 1.0)
+        rise = nodes - around[:, np.newaxis]
+        k = np.repeat(np.arange(around.size), nodes.size)
+        f = balance(rise.ravel(), k).reshape(rise.shape)
+        # stable where f falls
+        n, zero, stable = zeros_between(balance, rise, f)
+        parts.append((first + n, around[n] + zero, stable))
     n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
     found = theta <= hottest[n]
     return Zeros(n[found], theta[found], stable[found])
-
-
-def _extrema(f: Floats) -> tuple[Integers, Integers]:
-    """Return the nodes at which |f| has a minimum near which a parabola through three nodes
-    reaches 0; f has one sign at the three.
-
-    f: values of the balances, (states, nodes).
-    Returns (rows, columns) of these nodes, (m,) each.
-    """
-    size = np.abs(f)
-    before, at, after = (size[:, k : f.shape[1] - 2 + k] for k in range(3))
-    near = (at <= before) & (at <= after) & (at < np.abs(np.diff(f, 2)))
-    one_sign = np.abs(np.diff(np.sign(f), axis=1)) == 0.0
-    n, k = (near & one_sign[:, 1:] & one_sign[:, :-1]).nonzero()
-    return n, k + 1
 
 
 # --- Temperatures at which a roller runs ---
@@ -272,11 +246,33 @@ class Temperatures(Equilibria):
     _rows = "V", "temperature", "C_rr", "M", "M_half_space", "M_cylinder", "loss", "loss_slip"
     _ranges = "V", "temperature", "C_rr"
 
-    def __init__(self, values: dict[str, Any], reason: Any, labels: Labels | None) -> None:
-        """Keep the fields by name, their ``reason`` and the ``labels`` of the arguments."""
-        super().__init__(values, title=self._heading, si=True)
-        self.reason = reason
-        self._labels = labels
+    def __init__(
+        self, states: HeatStates, zeros: Zeros, rows: dict[str, Floats], labels: Labels | None
+    ) -> None:
+        """Pad the equilibria of states to arrays (states..., equilibria).
+
+        states: the states of the call.
+        zeros: the equilibria, (m,), unsorted.
+        rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in the loss is
+            dropped, and stated as the reason where no other one is left.
+        labels: labels of the arguments, which the fields get; None without.
+        """
+        low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
+        speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
+        inside = (speed == 0.0) | (speed >= low) & (speed <= high)
+        known = np.isfinite(rows["loss"] + rows["a_T"])
+        reason = _reasons(states, zeros, known=known, inside=inside, rows=rows)
+        order = np.lexsort((zeros.theta, zeros.state))
+        order = order[known[order]]
+        state = zeros.state[order]
+        count = np.bincount(state, minlength=states.load.size)
+        table = np.array([*(rows[name] for name in self._rows), zeros.stable, inside])[:, order]
+        *fields, stable, measured = pad(table, state, count, states.shape)
+        found = dict(zip(self._rows, fields, strict=True))
+        found |= {"stable": stable == 1.0, "measured": measured == 1.0}
+        found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
+        super().__init__(found, labels, si=True)
+        self.reason = reason.reshape(states.shape) if states.shape else reason[0]
 
     def to_xarray(self) -> Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
@@ -403,7 +399,7 @@ def temperature(
         rows = states.fields(zeros.state, zeros.theta, states.V[zeros.state])
     # V a_T: the speed at which the contact at the reference has these rates
     warn_of_contact(roller, rows["V"] * rows["a_T"])
-    return _pack(states, zeros, rows, labels)
+    return Temperatures(states, zeros, rows, labels)
 
 
 def _under_load(
@@ -452,39 +448,6 @@ def _under_load(
     rows["a_T"] = np.where(zeros.theta > states.curve.high, np.nan, a_T)
     rows["C_rr"] = rows["M"] / (states.load * states.R)[n[k]]
     return rows, Zeros(n[k], zeros.theta, zeros.stable & at["stable"][k])
-
-
-def _pack(
-    states: HeatStates, zeros: Zeros, rows: dict[str, Floats], labels: Labels | None
-) -> Temperatures:
-    """Return the result of the equilibria of states, padded to arrays (states..., equilibria).
-
-    states: the states of the call.
-    zeros: the equilibria, (m,), unsorted.
-    rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in the loss is dropped,
-        and stated as the reason where no other one is left.
-    labels: labels of the arguments, which the fields get; None without.
-    """
-    low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
-    speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
-    inside = (speed == 0.0) | (speed >= low) & (speed <= high)
-    known = np.isfinite(rows["loss"] + rows["a_T"])
-    reason = _reasons(states, zeros, known=known, inside=inside, rows=rows)
-    order = np.lexsort((zeros.theta, zeros.state))
-    order = order[known[order]]
-    state = zeros.state[order]
-    count = np.bincount(state, minlength=states.load.size)
-    table = np.array([*(rows[name] for name in Temperatures._rows), zeros.stable, inside])[:, order]
-    *fields, stable, measured = pad(table, state, count, states.shape)
-    found = dict(zip(Temperatures._rows, fields, strict=True))
-    found |= {"stable": stable == 1.0, "measured": measured == 1.0}
-    found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
-    if labels is not None:
-        found = {
-            name: labels.apply(name, each, *(() if name == "count" else ("equilibrium",)))
-            for name, each in found.items()
-        }
-    return Temperatures(found, reason.reshape(states.shape) if states.shape else reason[0], labels)
 
 
 def _reasons(

@@ -261,8 +261,6 @@ _EPSILON = 2
 _MOMENTS = slice(3, 5)
 #: indices of f, of which the sum is 2 kappa delta_f
 _FREE = slice(5, 7)
-#: indices of the slopes of lam and epsilon in Q
-_TILT = slice(9, 11)
 #: functions that have a row each beside those of a table: L, f, g and the slopes
 _BESIDE = [_LIMIT, *range(5, _COUNT)]
 #: offset of the first of two solves in ln z, whose difference is the slope of load and shift over z

@@ -201,7 +201,7 @@ class CoverModes:
         for name, share, sign in zip(BODIES, self.shares.tolist(), (1.0, -1.0)):
             series, nu, thickness = cover.body(name)
             # a rigid body, whose share is 0, has no coupling
-            local = sign * (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu) if share else 0.0
+            local = sign * local_coupling(nu) if share else 0.0
             bodies.append(
                 BodyModes(share / float(series.alpha), share * series.J, 1.0 / series.T, local)
             )
@@ -239,7 +239,7 @@ def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
     return instant + (J * b / (b - 1j * k[:, None])).sum(axis=1)
 
 
-def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
+def half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
     """Return nodes and weights of an integral over [0, inf), by the trapezoidal rule in s with
     scale ln(1 + e^s) as variable.
 
@@ -263,20 +263,34 @@ def layer_nodes(nu: float) -> LayerNodes:
     nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
     Returns :class:`LayerNodes` of some 245 nodes.
     """
-    u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
+    u, du = half_line_rule(_STEP, _SCALE, _ENDS)
+    L, shear, C = layer_excess(nu, u) * du
+    return LayerNodes(u, L / u, shear / u, C / u)
+
+
+def layer_excess(nu: float, u: Floats) -> Floats:
+    """Return what distinguishes a bonded layer from a half-space under a wave of traction.
+
+    nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
+    u: wave number times the thickness, > 0, (n,).
+    Returns L - 1, T - L, and C less :func:`local_coupling`, dimensionless, (3, n), without
+    cancellation.
+    """
     # with D = kap (1 + e^2) + (4 u^2 + 1 + kap^2) e: L = (kap (1 - e^2) - 4 u e)/D, and T has + 4 u
     # e; e = exp(-2 u) in place of hyperbolic functions, which overflow
     kap = 3.0 - 4.0 * nu
     e = np.exp(-2.0 * u)
     denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
-    local = (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
     coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / (
         (kap + 1.0) * denominator
-    ) - local
-    # L - 1 = -e rest/D, and T - L = 8 u e/D, both written without cancellation
+    ) - local_coupling(nu)
     rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
-    shear = du * e / denominator
-    return LayerNodes(u, -shear * rest / u, 8.0 * shear, du * coupling / u)
+    return np.array([-e * rest / denominator, 8.0 * u * e / denominator, coupling])
+
+
+def local_coupling(nu: Any) -> Any:
+    """Return (1 - 2 nu)/(2 - 2 nu), by which shear tilts a half-space of Poisson's ratio ``nu``."""
+    return (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
 
 
 def bessel(v: Floats, order: int) -> Floats:
@@ -310,7 +324,7 @@ def _decay_nodes() -> tuple[Floats, Floats]:
     """
     # with x = cosh t the power is exp(-n t) and dx = sinh t dt; cosh t - 1 = 2 sinh^2(t/2) keeps
     # its digits
-    t, weights = _half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
+    t, weights = half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
     orders = np.arange(term_count(LARGEST_THETA) * 2 + 1)[:, None]
     return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
 

@@ -66,7 +66,6 @@ def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
     until it ends.
     """
     from ..kernels.law import alpha_axis
-    from ..kernels.law.law_record import E0
 
     alpha = np.ascontiguousarray(alpha, dtype=np.float64)
     # numbers n of all octaves that occur, 2^n <= alpha < 2^(n + 1)
@@ -81,21 +80,18 @@ def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
             _octave_table[octave] = axis.numbers.ctypes.data, axis.starts.ctypes.data, axis.rows
     # a record holds one element at a time: it has room for the rows of any of these octaves
     row_count = int(_octave_table[octaves, -1].max())
-    records = []
-    for _ in range(count):
-        numbers, marks = allocate_rows(row_count)
-        marks[E0] = alpha_axis.ALPHA_E0
-        record = _lazy_record(
+    return tuple(
+        _lazy_record(
             alpha_axis,
             alpha_axis.select_alpha,
-            rows=numbers,
-            marks=marks,
+            row_count,
+            e0=alpha_axis.ALPHA_E0,
             alpha=alpha,
             state_count=alpha.size,
             octaves=_octave_table,
         )
-        records.append(record)
-    return tuple(records)
+        for _ in range(count)
+    )
 
 
 def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
@@ -159,12 +155,10 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     row_count = int(numbers[:, z_grid.FIRST_EXPONENT + 1].max(initial=1.0))
     nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max(initial=1.0)))
     workspace = np.empty(material_series.workspace_size(most_modes))
-    rows, marks = allocate_rows(row_count)
     return _lazy_record(
         z_grid,
         z_grid.select_series,
-        rows=rows,
-        marks=marks,
+        row_count,
         material_index=index,
         state_count=index.size,
         materials=numbers,
@@ -181,8 +175,8 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
 def _lazy_record(
     kernels: Any,
     select: Any,
-    rows: Floats,
-    marks: Integers,
+    row_count: int,
+    e0: int = 0,
     cover_rows: Floats | None = None,
     kept: Any = None,
     **fields: Any,
@@ -205,9 +199,11 @@ def _lazy_record(
     Returns :class:`.law_record.Law`, without rows of N.  Its arrays are read-only views,
     which the kernels change through their addresses.
     """
-    from ..kernels.law.law_record import Law
+    from ..kernels.law.law_record import E0, Law
     from ..kernels.numerics.intrinsics import function_address
 
+    rows, marks = allocate_rows(row_count)
+    marks[E0] = e0
     fields |= {"rows": rows, "marks": marks} | (
         {} if cover_rows is None else {"cover_rows": cover_rows}
     )
@@ -303,13 +299,11 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     # for each cover the address of the laws of its octave and their number of rows
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
-    rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
-    marks[E0] = records[0].marks[E0]
     return _lazy_record(
         cover_law,
         cover_law.select_cover,
-        rows=rows,
-        marks=marks,
+        max(record.marks[ROW_COUNT] for record in records),
+        e0=records[0].marks[E0],
         cover_index=index,
         state_count=index.size,
         cover_rows=align_vector(np.zeros(max(record.cover_rows.size for record in records))),
