@@ -5,6 +5,8 @@ words.
 import math
 from typing import NamedTuple
 
+from scipy.integrate import solve_ivp
+
 import viscoroll as vr
 
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
@@ -40,3 +42,15 @@ def given(plain):
     if "times" in plain:
         return vr.Schedule(**plain)
     return vr.Feedback(**plain | {"value": given(plain["value"])})
+
+
+def solved(scene, V0, omega0, t, force=0.0, torque=0.0):
+    """V and omega at t by Radau's method on the equations of motion with the bound law."""
+    law = vr.law(scene)
+
+    def rates(_, speeds):
+        loads = law(*speeds)
+        pull = loads.Q - loads.M_half_space + force
+        return scene.gamma * pull, scene.gamma / scene.j * (torque - loads.Q - loads.M_cylinder)
+
+    return solve_ivp(rates, (0.0, t), (V0, omega0), "Radau", rtol=1e-10, atol=1e-12).y[:, -1]

@@ -42,7 +42,7 @@ COMPILED_SLOPE = 1e-3
 #: second slope of Q jumps.  Slopes over load R/V, of which they are up to 11: 4e-2 seen there.
 COARSE_GRID = 2e-4
 COARSE_GRID_SLOPE = 0.1
-#: The largest error of 20,000 other points over that of the 100,000 which a grid states: never much
+#: The largest error of 8,000 other points over that of the 100,000 which a grid states: never much
 #: more, and no loose bound.
 GRID_MORE = 1.5
 GRID_LESS = 0.3

@@ -22,7 +22,7 @@ T = np.linspace(0.0, 3e-3, 16)
 
 # the paper's own scene is beyond the model
 pytestmark = [
-    pytest.mark.usefixtures("own_maps"),
+    pytest.mark.usefixtures("maps_of_this_file"),
     pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
 ]
 
@@ -42,18 +42,13 @@ def starts(count, seed, scene, top=2.0):
 
 PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0)
 THREE = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
-RUBBER = vr.Scene(material=THREE, kappa=20.0, mu=0.3, gamma=1.0)
+PAIR = vr.Scene(material=vr.Bodies(THREE, THREE, 0.5), kappa=20.0, mu=0.3, gamma=1.0)
 #: scene, highest speed; any scenes are those of claims (prove/motion.py, mapped)
 SCENES = {
     "paper": (SCENE, 2.0),
-    "kappa 29": (PAPER.replace(kappa=29.1), 2.0),
     "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0),
-    "alpha 2": (PAPER.replace(alpha=2.0), 2.0),
-    "j 1": (PAPER.replace(j=1.0), 2.0),
     "j 1.5": (PAPER.replace(j=1.5), 2.0),
-    "rubber": (RUBBER, 2.0),
-    "pair": (RUBBER.replace(material=vr.Bodies(THREE, THREE, 0.5)), 2.0),
-    "slow": (PAPER, 1e-4),
+    "pair": (PAIR, 2.0),
     "fast": (PAPER, 2000.0),
 }
 
@@ -64,7 +59,7 @@ def test_as_the_integrator_to_its_stated_error(name):
     integrated.
     """
     scene, top = SCENES[name]
-    V0, omega0 = starts(60, 2, scene, top)
+    V0, omega0 = starts(40, 2, scene, top)
     t = np.concatenate([np.geomspace(1e-7, 1e-1, 7), [1.0, 10.0, 200.0]]) * decay_time(scene)
     mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
     rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
@@ -120,27 +115,25 @@ def test_all_of_these_are_in_the_map(name):
     assert beside(*ALL_MAPPED[name]()).flow.all()
 
 
-#: scenes in which the stiff rate at onset is not far above the slow one; kappa V0, kappa omega0
-NEAR_RATES = [
-    ((22.822343517896204, 0.8333393570053901, 2.219273908549868, 1.0, 0.2688387197363067), start)
-    for start in ((1.4596, 1.41747), (1.20256, 1.1686))
-] + [
-    (
-        (1432.3597795448325, 0.8023587553693244, 0.5276418850483104, 1.0, 0.7653652644478643),
-        (1.00276, 0.996196),
-    )
-]
-
-
-@pytest.mark.parametrize(("scene", "start"), NEAR_RATES)
+@pytest.mark.parametrize(
+    ("scene", "start"),
+    [
+        (
+            (22.822343517896204, 0.8333393570053901, 2.219273908549868, 1.0, 0.26883872),
+            (1.4596, 1.41747),
+        ),
+        ((1432.3597795448325, 0.8023587553693244, 0.5276418, 1.0, 0.76536526), (1.00276, 0.996196)),
+    ],
+)
 def test_start_near_the_slow_manifold_where_rates_are_near(scene, start):
-    """V changes much within the boundary layer, and the search for an earlier entry may fail: it
-    must notice.
+    """The stiff rate at onset is not far above the slow one: V changes much within the boundary
+    layer, and the search for an earlier entry may fail: it must notice.  Starts are kappa V0 and
+    kappa omega0.
     """
     scene = vr.Scene(*scene)
-    spread = 1.0 + np.linspace(-1e-3, 1e-3, 41)
     V0, omega0 = np.array(start) / scene.kappa
     t = np.geomspace(1e-3, 5.0, 8) * decay_time(scene)
+    spread = np.linspace(1.0 - 1e-3, 1.0 + 1e-3, 41)
     beside(scene, np.full(41, V0), omega0 * spread, t, rtol=1e-4)
 
 
@@ -149,7 +142,7 @@ def test_rest(rest):
     """Of any threshold: one above all speeds of the tables leaves every motion to the
     integrator.
     """
-    V0, omega0 = starts(100, 7, SCENE)
+    V0, omega0 = starts(40, 7, SCENE)
     V0[:2] = 1e-4
     omega0[:2] = -1e-4
     t = np.linspace(0.0, 2e-2, 9)
@@ -169,8 +162,8 @@ SPIN = 1.4692137743888765  # by bisection on the sign of V at onset
 #: scene, starts, and whether each is in the map; two slide until V and omega vanish nearly
 #: together: their onset lies below every table
 BEYOND = {
-    "elastic": (SCENE.replace(alpha=1.0), *starts(20, 8, SCENE), [False] * 20),
-    "steady speed": (SCENE.replace(mu=0.01), *starts(20, 8, SCENE), [False] * 20),
+    "elastic": (SCENE.replace(alpha=1.0), [1.0], [0.5], [False]),
+    "steady speed": (SCENE.replace(mu=0.01), [1.0], [0.5], [False]),
     "onset": (
         SCENE,
         [1.0, -1.0, -1.0, 0.0],
@@ -184,7 +177,7 @@ BEYOND = {
             [0.5 * speed, speed],
             [False] * 2,
         )
-        for kappa, speed in ((1e250, 1.0), (1e-250, 1.0), (2.91, 1e90), (2.91, 1e-200))
+        for kappa, speed in ((1e250, 1.0), (2.91, 1e90), (2.91, 1e-200))
     },
 }
 
@@ -232,7 +225,7 @@ def test_hardly_any_speed_left_at_onset():
     # about the spin with which nothing is left
     spins = -V0 * np.linspace(0.55, 0.65, 4000)
     found = vr.ensemble(scene, V0, spins, t, method="flow", fields="V")
-    few = np.argsort(np.abs(found.V[:, 0]) / V0)[:400]
+    few = np.argsort(np.abs(found.V[:, 0]) / V0)[:100]
     best = vr.ensemble(scene, V0[few], spins[few], t, method="integrate", rtol=1e-12, fields="V")
     by = found.flow[few]
     assert found.flow.mean() > 0.99

@@ -13,7 +13,6 @@ from pipeline.evidence.prove.states import ulps
 from pipeline.evidence.truth import ratio_table
 from viscoroll.kernels.law import bessel_ratios
 from viscoroll.kernels.law.bessel_ratios import TABLE, ratio_i2, ratio_k, ratio_r
-from viscoroll.kernels.numerics.intrinsics import septic
 
 
 def places():
@@ -59,14 +58,3 @@ def test_every_coefficient_is_the_rounded_fit():
     """All of them, bit for bit: a change of one, however small and of whatever order, shows."""
     assert TABLE.shape == (bessel_ratios.TABLE_SIZE,)
     assert np.array_equal(TABLE, ratio_table())
-
-
-def test_polynomials_are_summed_with_one_rounding_a_term():
-    """(1 + u)^2 - 1 - 2 u = u^2, which two roundings would lose; and powers of two, which no
-    rounding touches.
-    """
-    t = 1.0 + 2.0**-30
-    u = 2.0**-30
-    assert septic(t, (-1.0 - 2.0**-29, t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)) == u * u
-    powers = 2.0 ** np.arange(8)
-    assert septic(2.0, tuple(powers)) == np.sum(powers * 2.0 ** np.arange(8))

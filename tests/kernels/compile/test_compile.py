@@ -145,11 +145,6 @@ def fresh():
     return sum(function.stats.cache_hits.values())
 
 
-def test_second_use_is_from_the_cache(cache):
-    assert fresh() == 1
-    assert len([*cache.iterdir()]) == 1
-
-
 #: without a figure: the first kernel does not know how many follow it
 NOTICE = (
     r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
