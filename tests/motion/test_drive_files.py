@@ -1,11 +1,22 @@
-"""Driven motions as datasets, and at other times."""
+"""Driven motions as datasets and at other times; schedules of many corners; and the threshold
+``rest``, which counts once nothing drives any more.
+"""
+
+import tracemalloc
 
 import numpy as np
+import tolerances as tol
 import xarray as xr
+from closeness import close
 from drives import ROLLER
+from refusals import refused
 
 import viscoroll as vr
+from viscoroll.motion import drive_functions
+from viscoroll.motion.motion_arguments import Drive
 
+PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
+LATE = np.array([0.0, 0.5, 1.0, 5.0, 10.0, 20.0, 22.0, 25.0, 40.0, 80.0])
 RAMP = vr.Schedule([0.0, 1.0, 1.0], [0.0, 0.2, 0.0])
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 T = np.linspace(0.0, 4.0, 9)
@@ -43,3 +54,66 @@ def test_an_ensemble_carries_its_drives():
     assert data["drive_slope"].values.tolist() == [0.01, 0.02]
     for name in ACTING:
         assert np.array_equal(data[name].values, e[name])
+
+
+# --- many corners ---
+
+
+def pieces_of(drive, end):
+    """The pieces of a drive of one motion."""
+    functions = drive_functions.prepare_drive(drive, 0.1, 0.1, end, 1e-8).functions
+    assert functions is not None
+    return functions.pieces
+
+
+def test_memory_of_a_schedule_is_proportional_to_its_corners():
+    count = 50_000
+    times = np.arange(count) * 1e-3
+    drive = Drive(
+        torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times)
+    )
+    assert pieces_of(Drive(torque=0.1), 1.0).size  # imports take memory too
+    tracemalloc.start()
+    pieces = pieces_of(drive, times[-1])
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert pieces.shape[1] == 2 * count - 2
+    assert peak <= tol.BYTES_A_CORNER * 2 * count
+
+
+def test_a_jump_of_one_slow_motion_is_refused_beside_fast_ones():
+    """A jump is judged by the speeds of its own motion: 1e-13 is one where the speed is 1e-13."""
+    speeds = vr.Schedule(
+        [[0.0, 1.0, 2.0], [0.0, 1.0, 1.0]], [[1.0, 2.0, 3.0], [1e-13, 1e-13, 3e-13]]
+    )
+    refused(lambda: vr.ensemble(ROLLER, None, 0.2, 3.0, V=speeds), "V jumps at t = 1: must be")
+
+
+# --- rest ---
+
+
+def test_a_later_pulse_is_waited_for():
+    """Pulses on [0, 1] and [20, 25]: between them V falls to a thousandth of the threshold."""
+    push = 0.05 * np.array([0.0, 1.0, 1.0, 0.0])
+    pulses = vr.Schedule(np.repeat([0.0, 1.0, 20.0, 25.0], 2), [*push, *push])
+    m, whole = (vr.roll(PAPER, 0.0, 0.0, LATE, force=pulses, rest=rest) for rest in (1e-3, None))
+    assert m.status == vr.MotionStatus.RESTED
+    assert m.rest_time > 25.0
+    before = m.rest_time > LATE
+    assert close(m.V[before], whole.V[before], 30e-8)
+    assert not m.V[~before].any()
+    assert np.array_equal(m.force > 0.0, whole.force > 0.0)
+
+
+def test_force_after_rest_is_what_is_given():
+    """A ramp that ends: what the threshold is above all the time ends the motion where the ramp
+    does.
+    """
+    force = vr.Schedule([[0.0, 5.0], [0.0, 2.0]], [[0.004, 0.0], [0.002, 0.0]])
+    e = vr.ensemble(PAPER, 0.05, 0.05, LATE, force=force, rest=0.045, fields=("V", "force"))
+    assert np.array_equal(e.rest_time, [5.0, 2.0])
+    assert close(e.force[0], np.interp(LATE, [0.0, 5.0], [0.004, 0.0]), 1e-15, scale=0.004)
+    assert not e.V[1, LATE >= 2.0].any()
+    m = vr.roll(PAPER, 0.05, 0.05, LATE, force=vr.Schedule([0.0, 5.0], [0.004, 0.0]), rest=0.045)
+    assert m.rest_time == 5.0
+    assert np.array_equal(m.force, e.force[0])

@@ -3,12 +3,14 @@ drive.
 """
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
 from drives import ROLLER
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll.motion import drive_pieces
@@ -64,7 +66,7 @@ def test_a_callable_is_met_in_few_values(name, rtol):
     assert function.calls <= tol.CALLABLE_VALUES
     assert curve.starts.size <= tol.CALLABLE_PIECES
     assert (np.diff(curve.starts) > 0.0).all()
-    t = np.sort(np.random.default_rng(3).uniform(0.0, END, 5000))
+    t = np.sort(np.random.default_rng(3).uniform(0.0, END, 2000))
     exact = np.array([function(one) for one in t])
     so_far = np.maximum.accumulate(np.abs(exact))
     largest = np.abs(exact).max()
@@ -80,17 +82,11 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many
     values as it may.
     """
-    monkeypatch.setattr(drive_pieces, "MOST", 20_000)
+    monkeypatch.setattr(drive_pieces, "MOST", 5_000)
+    words = "torque = a function that piecewise polynomials cannot approximate near t = "
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
-        with pytest.raises(
-            vr.ParameterError,
-            match=(
-                r"^torque = a function that piecewise polynomials cannot approximate near t = "
-                r".*Schedule"
-            ),
-        ):
-            vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
+        refused(partial(vr.roll, ROLLER, 0.5, 0.5, END, torque=function), words, "Schedule")
         assert function.calls <= 2 * drive_pieces.MOST
 
 
@@ -121,7 +117,7 @@ def test_speeds_prescribed_by_callables(name):
     t = np.linspace(0.0, END, 41)
     exact = np.array([CALLABLES[name](one) for one in t])
     best = vr.roll(ROLLER, 0.0, None, t, rtol=1e-12, omega=CALLABLES[name])
-    for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
+    for rtol in (1e-2, 1e-8):
         m = vr.roll(ROLLER, 0.0, None, t, rtol=rtol, omega=CALLABLES[name])
         assert m.status == vr.MotionStatus.DONE
         assert m.steps < tol.CALLABLE_STEPS

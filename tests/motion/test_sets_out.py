@@ -21,7 +21,7 @@ def fastest(m):
     return float(max(np.abs(m.V).max(), np.abs(m.omega).max()))
 
 
-@pytest.mark.parametrize("faint", [1e-12, 1e-15, 1e-18, 1e-40, 1e-70])
+@pytest.mark.parametrize("faint", [1e-12, 1e-18, 1e-70])
 def test_a_faint_drive_moves_as_much_less(faint):
     """At low speed the motion is linear in what drives it: by a push, a ramp, and a ramp that
     begins later.
@@ -33,7 +33,7 @@ def test_a_faint_drive_moves_as_much_less(faint):
         assert close(m.V / faint, plain.V / 1e-9, tol.FAINT)
 
 
-@pytest.mark.parametrize("faint", [1e-18, 1e-70, 1e-100, 1e-300])
+@pytest.mark.parametrize("faint", [1e-18, 1e-100, 1e-300])
 def test_what_follows_a_faint_beginning(faint):
     """A ramp up from next to nothing is one up from 0."""
     plain = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 0.5, 2.0], [0.0, 0.0, 0.1]))
@@ -60,7 +60,7 @@ def test_a_start_of_next_to_nothing(drive, creep):
     scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4)
     t = np.array([1e-3, 2e-3, 1e-2])
     plain = vr.roll(scene, 0.0, 0.0, t, **drive)
-    for V0 in (1e-80, 1e-90, 1e-95, 1e-100, 1e-300):
+    for V0 in (1e-80, 1e-95, 1e-300):
         m = vr.roll(scene, V0, creep * V0, t, **drive)
         assert m.status == vr.MotionStatus.DONE
         assert close(m.V, plain.V, 30e-8, scale=max(fastest(plain), V0))
@@ -73,7 +73,7 @@ def test_to_and_fro_where_friction_is_strong():
     """
     scene = vr.Scene(alpha=11.0, kappa=0.1, mu=0.9, gamma=1.0, j=0.8)
     draw = np.random.default_rng(5)
-    n = 60
+    n = 30
     jumps = 20
     times = np.repeat(np.arange(jumps + 1.0), 2)[1:-1]
     t = np.linspace(0.0, jumps, 61)

@@ -10,40 +10,31 @@ from refusals import refused
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
+from pipeline.evidence.prove.motion import balance
 
 #: nowhere more unsteady than 0.22: it may pass V = 0
 GENTLE = vr.Scene(alpha=3.0, kappa=5.0, mu=0.5, gamma=1.5, j=0.8)
 T = np.linspace(0.0, 8.0, 17)
 
 
-def second_method(scene, V0, omega0, t, rtol=1e-11, **drive):
+def second_method(scene, V0, omega0, t, force=0.0, torque=0.0):
     """V and omega by Radau's method on the equations of partial slip, from states of the contact
     and N.
     """
 
     def rates(_, speeds):
-        V, omega = speeds
-        state = vr.contact(scene, V, omega=omega, fields=("Q", "M", "N"))
-        V_rate = (
-            scene.gamma
-            * (state.Q - 0.5 * state.M + drive.get("force", 0.0))
-            / (1.0 + 0.5 * scene.gamma * state.N)
-        )
+        state = vr.contact(scene, speeds[0], omega=speeds[1], fields=("Q", "M", "N"))
+        pull = scene.gamma * (state.Q - 0.5 * state.M + force)
+        V_rate = pull / (1.0 + 0.5 * scene.gamma * state.N)
         moment = 0.5 * (state.M + state.N * V_rate)
-        return V_rate, scene.gamma * (drive.get("torque", 0.0) - state.Q - moment) / scene.j
+        return V_rate, scene.gamma / scene.j * (torque - state.Q - moment)
 
-    return solve_ivp(rates, (t[0], t[-1]), (V0, omega0), "Radau", t, rtol=rtol, atol=1e-14).y
-
-
-def share(scene, V):
-    """gamma N over 1 + j."""
-    return scene.gamma * vr.contact(scene, V, delta=0.0, fields="N").N / (1.0 + scene.j)
+    return solve_ivp(rates, (t[0], t[-1]), (V0, omega0), "Radau", t, rtol=1e-11, atol=1e-14).y
 
 
 @pytest.mark.parametrize(
     ("scene", "start", "t", "drive"),
     [
-        (RUBBER, (1.0, 1.0), T, {}),
         (ROLLER, (30.0, 29.9), T, {}),
         (RUBBER, (1.0, 0.999), T, {"force": 0.004, "torque": 0.01}),
         (GENTLE, (0.3, 0.3), 0.1 * T, {"force": -0.05}),
@@ -64,11 +55,7 @@ def test_works_and_losses_add_up():
     m = vr.roll(GENTLE, 0.2, 0.1, T, force=-0.05, torque=0.01, unsteady=True)
     assert m.status == vr.MotionStatus.DONE
     assert m.V[-1] < 0.0 < m.V[0]
-    energy = 0.5 * (m.V**2 + GENTLE.j * m.omega**2)
-    lost = m.slip_loss + m.rolling_loss + m.brake_loss
-    assert close(
-        energy - energy[0] + lost, m.work_force + m.work_torque, tol.ENERGY, scale=energy.max()
-    )
+    assert balance(m) <= tol.ENERGY
 
 
 def test_from_rest_and_to_it():
@@ -94,9 +81,9 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
         m = vr.roll(scene, V0, V0, 100.0, unsteady=True).course
     assert m.status == vr.MotionStatus.UNSTEADY
-    reached = m.regime >= 0
-    assert reached.tolist() == [True] * (m.t.size - 1) + [False]
-    assert close(share(scene, m.V[reached][-1]), level, 1e-6)
+    assert (m.regime >= 0).tolist() == [True] * (m.t.size - 1) + [False]
+    N = vr.contact(scene, m.V[-2], delta=0.0, fields="N").N
+    assert close(scene.gamma * N / (1.0 + scene.j), level, 1e-6)
     with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
         slower = vr.roll(scene, 0.9 * m.V[-2], 0.9 * m.V[-2], T, unsteady=True)
     assert (slower.status, *slower.regime[:2]) == (vr.MotionStatus.UNSTEADY, 1, -1)
@@ -138,16 +125,16 @@ def test_a_rest_costs_speed():
     """V0 and omega0 less what leaving the imprint takes; a rest of no time nothing, a longer one
     more.
     """
-    V0 = 30.0
-    start = ROLLER.validity(V0).steady.start.speed
-    long, none = (vr.roll(ROLLER, V0, 29.99, T, rested=each, unsteady=True) for each in (True, 0.0))
-    assert close(long.V[0], V0 - start, 1e-14)
+    left = 30.0 - ROLLER.validity(30.0).steady.start.speed
+    none, brief, *longer, long = (
+        vr.roll(ROLLER, 30.0, 29.99, T, rested=rested, unsteady=True)
+        for rested in (0.0, 1e-9, 0.1, 1.0, 1e3, True)
+    )
+    assert none.V[0] == brief.V[0] == 30.0
+    assert (np.diff([brief.V[0], *(m.V[0] for m in longer)]) < 0.0).all()
+    assert close(longer[-1].V[0], left, 1e-6)
+    assert close(long.V[0], left, 1e-14)
     assert close(long.delta[0], none.delta[0], 1e-6)
-    assert none.V[0] == V0
-    V = [vr.roll(ROLLER, V0, V0, T, rested=rested).V[0] for rested in (1e-9, 0.1, 1.0, 1e3)]
-    assert V[0] == V0
-    assert (np.diff(V) < 0.0).all()
-    assert close(V[-1], V0 - start, 1e-6)
 
 
 @pytest.mark.parametrize("t_w", [0.5, 3.0])
@@ -168,18 +155,18 @@ def test_a_short_rest_costs_less(t_w):
 def test_caught_in_the_imprint():
     """V = 1.3 is 4.3 cm/s, of which validity says it too."""
     with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of the standstill"):
-        m = vr.roll(ROLLER, 1.3, 1.3, T, rested=True, unsteady=True)
-    assert m.status == vr.MotionStatus.CAUGHT
-    assert np.isnan(m.V).all()
+        m = vr.roll(ROLLER, 1.3, 1.3, T[:3], rested=True, unsteady=True)
     V0 = np.array([1.3, 30.0, -1.3])
     e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, unsteady=True, method="auto")
     by_flow = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, method="flow")
     caught = [vr.MotionStatus.CAUGHT, vr.MotionStatus.DONE, vr.MotionStatus.CAUGHT]
     assert e.status.tolist() == by_flow.status.tolist() == caught
     assert (by_flow.flow.tolist(), by_flow.switches[0]) == ([False, True, False], 0)
-    assert np.isnan([e.V[::2, 0], e.onset_time[::2]]).all()
+    assert np.isnan(e.onset_time[::2]).all()
     one = vr.roll(ROLLER, 30.0, 30.0, T[:3], rested=True, unsteady=True)
-    assert np.array_equal(e.V[1], one.V)
+    nothing = np.full(3, np.nan)
+    assert m.status == vr.MotionStatus.CAUGHT
+    np.testing.assert_array_equal([m.V, *e.V], [nothing, nothing, one.V, nothing])
 
 
 @pytest.mark.parametrize("V0", [0.0, -0.0])

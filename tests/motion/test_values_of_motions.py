@@ -51,7 +51,7 @@ def test_drives_that_do_nothing(name):
     motions.
     """
     free = vr.roll(DRIVEN, 1.5, 0.5, T)
-    for nothing in (0, np.float32(0.0), np.array(0.0)):
+    for nothing in (0, np.array(0.0)):
         m = vr.roll(DRIVEN, 1.5, 0.5, T, **{name: nothing})
         assert (m.V.tolist(), m.steps, any(m.drive.given)) == (free.V.tolist(), free.steps, False)
     e = vr.ensemble(DRIVEN, 1.5, 0.5, T, fields=("V", "force"), **{name: [0.0, 0.0]})
@@ -59,19 +59,14 @@ def test_drives_that_do_nothing(name):
 
 
 def test_what_rests_and_what_sets_out():
-    """Rest stays while nothing acts, and ends where a ramp begins; a push against friction below
-    its limit moves; a brake holds at rest while |f| <= mu and |f + q| <= B.
+    """Rest stays while nothing acts, and ends where a ramp begins; loads of opposite sense that
+    friction can carry hold each other.
     """
     m = vr.roll(DRIVEN, 0.0, 0.0, T, torque=vr.Schedule([0.0, 4.0, 8.0], [0.0, 0.0, 0.1]))
     assert np.array_equal(m.V > 0.0, T > 4.0)
     assert set(m.regime[T < 4.0]) == {2}
-    assert (vr.roll(DRIVEN, 0.0, 0.0, T, force=1e-6).V[1:] > 0.0).all()
     m = vr.roll(DRIVEN, 0.0, 0.0, T, force=-0.1, torque=0.1)
     assert (m.V.any(), set(m.regime)) == (False, {2})
-    ramp = vr.Schedule([0.0, 10.0], [0.0, 0.2])
-    m = vr.roll(DRIVEN, 0.0, 0.0, np.linspace(0.0, 10.0, 41), force=ramp, brake=0.1)
-    assert close(m.switches[0].t, 5.0, 1e-6)
-    assert (m.V[m.t < 5.0].any(), m.V[-1] > 0.0) == (False, True)
     # a callable that starts at rest does: its polynomials begin with rounding of either sign, a
     # start in full slip the wrong way
     for name, start in (("V", (None, 0.0)), ("omega", (0.0, None))):
@@ -80,8 +75,8 @@ def test_what_rests_and_what_sets_out():
     # traction at rest has the sign of what follows: V = -0 at the start of a motion backward
     for torque in (0.1, 0.8):
         on, back = (
-            vr.roll(DRIVEN, 0.0, 0.0, [0.0, 1e-9, 1.0], torque=sign * torque).contact("Q").Q
-            for sign in (1.0, -1.0)
+            vr.roll(DRIVEN, 0.0, 0.0, [0.0, 1e-9, 1.0], torque=each).contact("Q").Q
+            for each in (torque, -torque)
         )
         assert on[0] > 0.0
         assert np.array_equal(on, -back)

@@ -15,7 +15,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.contact_mechanics.coupled_pair import CoupledPair
-from viscoroll.contact_mechanics.coupled_tables import coupled_law, measure_errors
+from viscoroll.contact_mechanics.coupled_tables import measure_errors
 from viscoroll.laws.law_netcdf import law_as_dataset
 
 ONE = vr.Prony([10.0], [1.0 / 11.0])
@@ -28,8 +28,8 @@ BOTH_SLIP = vr.Cover(vr.Prony([1.0, 3.0], [10.0, 0.1]), nu=0.3, thickness=0.5, o
 
 @cache
 def law_of(material, mu):
-    """A table takes two seconds."""
-    return coupled_law(vr.Scene(material=material, kappa=4.0, mu=mu))
+    """The table that a scene has unless asked otherwise, which takes two seconds."""
+    return vr.Scene(material=material, kappa=4.0, mu=mu).rolling_law
 
 
 @pytest.fixture(scope="module")
@@ -139,12 +139,14 @@ def test_grids_of_other_programs_roll(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@pytest.mark.parametrize("coupled", [True, False])
 @pytest.mark.parametrize("omega_over_V", [1.0, 1.2, 0.0, -10.0])
-def test_the_slowest_free_motions_are_all_alike(scene, omega_over_V):
+def test_the_slowest_free_motions_are_all_alike(coupled, omega_over_V):
     """Where nothing slips in free rolling at rest, the equations are linear at low speed: V/V0 does
     not depend on V0, whether it is found by steps (the first), by steps and the closed form of the
     decay, or by the latter alone (the last); the losses take what kinetic energy has gone.
     """
+    scene = vr.Scene(material=BELT, kappa=4.0, mu=0.3, gamma=1.0, coupled=coupled)
     t = [1e-3, 1.0, 3.0]
     speeds = (1e-14, 1e-20, 1e-149, 1e-250)
     slow = [scene.roll(V0, omega_over_V * V0, t, rtol=1e-12) for V0 in speeds]
@@ -166,11 +168,9 @@ def test_a_cover_that_slips_in_free_rolling_stops_at_once_from_the_least_speeds(
 
 def test_unlike_half_spaces_have_a_table():
     bodies = vr.Bodies(vr.Prony.elastic(), ONE, 0.05, (0.3, 0.3))
-    exact = vr.Scene(material=bodies, kappa=4.0, mu=0.3)
-    table = exact.replace(material=coupled_law(exact))
+    scene = vr.Scene(material=bodies, kappa=4.0, mu=0.3)
     states = {"V": np.array([-0.1, 0.01, 0.1, 1.0]), "delta": np.array([0.02, -0.01, 0.015, 0.0])}
-    found = table.contact(**states)
-    truth = exact.contact(**states, method="coupled")
+    found, truth = (scene.contact(**states, method=way) for way in ("table", "coupled"))
     assert close(found.Q, truth.Q, tol.TABLE_Q, scale=0.3)
     assert close(4.0 * found.M, 4.0 * truth.M, tol.TABLE_M, scale=1.0)
 
@@ -189,13 +189,11 @@ def test_speeds_beyond_the_nodes_join_the_elastic_limits(law, scene):
         assert close(4.0 * state.M_half_space, rows.fields[row, [0, -1], 1], tol.TABLE_MOTION)
 
 
-def test_one_cover_takes_its_table_unless_asked_otherwise(law):
-    roller = vr.Scene(material=BELT, kappa=4.0, mu=0.3)
+def test_one_cover_takes_its_table_unless_asked_otherwise(scene):
+    own = scene.replace(material=BELT)
     states = {"V": 0.1, "delta": np.linspace(-0.2, 0.2, 9)}
-    by_default = roller.contact(**states)
-    of_table = vr.Scene(material=law, kappa=4.0, mu=0.3).contact(**states)
-    assert np.array_equal(by_default.Q, of_table.Q)
-    assert np.abs(by_default.Q - roller.replace(coupled=False).contact(**states).Q).max() > 1e-3
+    assert np.array_equal(own.contact(**states).Q, scene.contact(**states).Q)
+    assert np.abs(own.contact(**states).Q - own.uncoupled.contact(**states).Q).max() > 1e-3
 
 
 @pytest.mark.parametrize(

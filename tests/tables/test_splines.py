@@ -23,9 +23,9 @@ ALPHA = np.array([5.0, 7.0, 11.0, 16.0])
 
 @pytest.fixture(scope="module")
 def grid():
-    return vr.tables.build(
-        SCENE, V, delta=vr.tables.creep_nodes(SCENE, V, 81, alpha=ALPHA), alpha=ALPHA
-    )
+    speeds = V[::2]
+    nodes = vr.tables.creep_nodes(SCENE, speeds, 41, alpha=ALPHA)
+    return vr.tables.build(SCENE, speeds, delta=nodes, alpha=ALPHA)
 
 
 @pytest.fixture(scope="module")
@@ -74,13 +74,9 @@ def many(at, spline, V, delta, alpha, out):
 
 
 @pytest.mark.parametrize("linear", [False, True])
-@pytest.mark.parametrize("kind", ["alphas", "one alpha", "few nodes"])
-def test_compiled_values_are_those_of_the_interpolant(grid, kind, linear):
-    table = {
-        "alphas": grid,
-        "one alpha": grid.isel(alpha=0, drop=True),
-        "few nodes": grid.isel(V=[0, 9], delta=[3, 9, 20]),
-    }[kind]
+@pytest.mark.parametrize("nodes", [{}, {"alpha": 0}, {"V": [0, 9], "delta": [3, 9, 20]}])
+def test_compiled_values_are_those_of_the_interpolant(grid, nodes, linear):
+    table = grid.isel(nodes, drop=True)
     look_up = vr.tables.Interpolant(table, linear)
     points = inside(table, 500)
     places = [points.get(axis, np.ones(500)) for axis in ("V", "delta", "alpha")]
@@ -116,16 +112,11 @@ def test_compiled_slopes_are_those_of_the_values(grid):
 
 
 def test_compiled_values_are_clipped_and_nothing_is_extrapolated(grid):
-    one = grid.sel(alpha=[11.0])
-    free = one.assign_attrs()
-    del free.attrs["mu"]
-    (at, Q), (_, plain) = (vr.tables.Interpolant(table).jitted("Q") for table in (one, free))
-    creeps = np.linspace(one.delta[0].item(), one.delta[-1].item(), 4001)
-    values = np.array([at(Q, 0.02, creep, 0.0) for creep in creeps])
-    beyond = np.array([abs(at(plain, 0.02, creep, 0.0).value) for creep in creeps]) > SCENE.mu
-    assert beyond.any()
-    assert (np.abs(values[beyond, 0]) == SCENE.mu).all()
-    assert (values[beyond, 1:] == 0.0).all()
+    at, Q = vr.tables.Interpolant(grid.sel(alpha=[11.0])).jitted("Q")
+    slips = np.array([at(Q, 0.02, creep, 0.0) for creep in np.linspace(0.02, 0.05, 1001)])
+    slips = slips[slips[:, 0] == SCENE.mu]
+    assert slips.size
+    assert not slips[:, 1:].any()
     for outside in ((5.0, 0.0), (1e-5, 0.0), (0.1, 1.0), (np.nan, 0.0), (0.1, np.nan), (-0.1, 0.0)):
         assert np.isnan(at(Q, *outside, 0.0)).all()
 
