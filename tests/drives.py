@@ -10,6 +10,8 @@ from scipy.integrate import solve_ivp
 import viscoroll as vr
 
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+#: the paper's, in which a time of 1/gamma is 1
+PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
 #: whose law is unsteady
 RUBBER = ROLLER.replace(gamma=18.0)
 #: fits of src/viscoroll/datasets/dma.csv, and a roller of them as of docs/validity.md: 0.1 m,

@@ -117,12 +117,11 @@ def test_two_like_covers_do_not_couple():
         other_nu=0.3,
         other_thickness=0.5,
     )
-    found = coupled(scene_of(nip), 0.1, delta=[0.0, 0.02])
+    fields = "Q", "M_half_space", "M_cylinder", "delta_0"
+    found = coupled(scene_of(nip), 0.1, delta=[0.0, 0.02], fields=fields)
     assert close(found.Q[0], 0.0, tol.COUPLED_HALF_SPACE, scale=MU)
     assert close(found.delta_0, 0.0, tol.COUPLED_HALF_SPACE, scale=1.0)
     assert close(found.M_half_space[0], found.M_cylinder[0], tol.COUPLED_HALF_SPACE)
-    rigid = coupled(scene_of(vr.Cover(ONE, nu=0.3, thickness=0.5), mu=1e-4), 0.1, delta=1.0)
-    assert close(2.0 * found.M_cylinder[0], rigid.M, tol.COUPLED_EDGES)
 
 
 def losses_by_transforms(pair, u, profile):
@@ -230,7 +229,7 @@ def test_depth_is_that_of_the_surface_in_the_middle():
     cover = vr.Cover(vr.Prony.elastic(), nu=0.3, thickness=0.5, on="base")
     row = CoupledRow(CoupledPair.of_scene(scene_of(cover)), 0.0, MU)
     profile = row.profile(0.05)
-    k = np.linspace(1e-9, 600.0, 60001)
+    k = np.linspace(1e-9, 600.0, 20001)
     L, _, C = layer_transforms(0.3, np.minimum(0.5 * k, 300.0))
     p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
     middle = np.trapezoid((L * p / k + 1j * C * q / k).real, k) / np.pi

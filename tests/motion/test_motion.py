@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import PAPER
 
 import viscoroll as vr
 from pipeline.evidence.prove import independent
@@ -49,7 +50,7 @@ def test_outputs_end_where_slip_returns():
     returned = vr.roll(RETURNING, 1.0, 1.0, [2e-3], rtol=1e-12).switches[0].t
     for shift in (*np.arange(-3.0, 4.0) * 2.0**-52, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8):
         motion = vr.roll(RETURNING, 1.0, 1.0, [returned * (1.0 + shift)], rtol=1e-12)
-        assert motion.status == vr.MotionStatus.DONE
+        assert motion.success
         assert motion.steps < 500
         assert len(motion.switches) <= 1
         edge = vr.contact(RETURNING, motion.V, omega=motion.omega)
@@ -63,7 +64,7 @@ def test_outputs_end_where_V_passes_zero(alpha, method):
     scene = vr.Scene(alpha=alpha, kappa=1.0, mu=1.0, gamma=1.0, j=2.0)
     for shift in (-1e-15, -(2.0**-53), 0.0, 2.0**-52, 1e-15, 1e-12):
         found = vr.ensemble(scene, 1.0, -257.0, 1.0 + shift, method=method, rtol=1e-3)
-        assert found.status[0] == vr.MotionStatus.DONE, shift
+        assert found.success[0], shift
         assert close(found.V[0, -1], -shift, 1e-14, scale=1.0)
         assert close(found.omega[0, -1], -257.0 + 0.5, 1e-12)
 
@@ -75,7 +76,7 @@ def test_threshold_of_the_return_of_slip():
     for excess, returns in ((2e-3, 0), (0.0, 1), (-2e-3, 1), (-5e-2, 1)):
         scene = RETURNING.replace(mu=(1.0 + excess) * THRESHOLD / RETURNING.kappa)
         motion = vr.roll(scene, 2.0, 2.0, 1e-2)
-        assert motion.status == vr.MotionStatus.DONE, excess
+        assert motion.success, excess
         assert motion.steps < 2000, excess
         assert [s.regime for s in motion.switches] == returns * ["full slip", "partial slip"], (
             excess
@@ -100,11 +101,7 @@ def test_rest_while_sliding_and_from_the_start():
     assert (slow.rest_time, slow.status, slow.V[0]) == (0.0, vr.MotionStatus.RESTED, 0.0)
     # both speeds fall through the threshold while sliding: V + j omega = 0; V and omega of nearly
     # one size
-    for *start, rest in (
-        (0.5, -1.0, 0.2),
-        (-0.7113467608790995, -1.3359553878111319, 1.0),
-        (0.7058009751523, 1.36067526863356, 1.0),
-    ):
+    for *start, rest in ((0.5, -1.0, 0.2), (0.7058009751523, 1.36067526863356, 1.0)):
         sliding = vr.roll(ROUNDED, *start, [1.0], rest=rest)
         assert math.isnan(sliding.onset_time)
         there = vr.roll(ROUNDED, *start, [sliding.rest_time], rtol=1e-12)
@@ -118,8 +115,7 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
     """In the units that it is asked in, with what to try."""
     words = re.compile(
         r"the step limit was reached first: raise max_steps, shorten the motion or, unless a speed "
-        r"grows without "
-        r"bound, loosen rtol; the last state was "
+        r"grows without bound, loosen rtol; the last state was "
         r"t = (\S+)( s)? in partial slip, V = (\S+)( m s-1)?, omega = (\S+)( rad s-1)?(; |$)"
     )
     with pytest.warns(RuntimeWarning, match="gives the last state"):
@@ -143,7 +139,7 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
 @pytest.mark.parametrize("j", [0.3, 0.5, 1.7])
 def test_late_creep_is_what_both_equations_ask(j):
     """V and omega fall together at last: Q (1 + j) = (j - 1) M/2, down to speeds of 1e-119."""
-    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=j)
+    scene = PAPER.replace(j=j)
     late = vr.roll(scene, 1.0, 0.2, [200.0, 400.0])
     state = late.contact()
     assert close((1.0 + j) * state.Q, 0.5 * (j - 1.0) * state.M, tol.LATE_CREEP)

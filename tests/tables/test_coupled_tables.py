@@ -9,6 +9,7 @@ import c_code
 import numpy as np
 import pytest
 import tolerances as tol
+from calls import RUBBER_COVER, pair
 from closeness import close
 from drives import solved
 from refusals import refused
@@ -206,10 +207,7 @@ def test_many_covers_in_one_call_say_what_their_tables_would_take(change, tables
 
 
 def test_a_search_that_changes_the_table_is_refused():
-    rubber = vr.Material(E=4e6, nu=0.49, prony=ONE, thickness=6e-3)
-    roller = vr.Cylinder(
-        R=0.08, m=40.0, material=vr.Material.rigid(), base=rubber, mu=0.5, load=2e3
-    )
+    roller = pair(RUBBER_COVER, vr.Material.rigid())
     data = vr.Traction(V=1.0, delta=[-0.01, 0.01], Q=[-500.0, 500.0], sigma=1.0)
     refused(lambda: vr.identify(roller, {"mu": (0.1, 1.0)}, [data]), "mu", "must be False")
 

@@ -31,8 +31,8 @@ def test_elastic_cylinder():
         # in the end it rolls at the speed that conserves V + j omega, for ever
         final = (V0 + scene.j * omega0) / (1.0 + scene.j)
         rolls = vr.roll(scene, V0, omega0, [1.0, 1e3], rtol=1e-8)
-        assert close((rolls.V, rolls.omega), np.full((2, 2), final), 1e-7, scale=1.0)
-        assert close(np.diff(rolls.x), 999.0 * final, 1e-7, scale=1.0)
+        found = [*rolls.V, *rolls.omega, np.diff(rolls.x)[0] / 999.0]
+        assert close(found, final, 1e-7, scale=1.0)
 
 
 def test_the_first_instants():
@@ -57,14 +57,3 @@ def test_a_held_cylinder_takes_no_steps(spin):
     M = vr.contact(scene, motion.V[0], omega=motion.omega[0], fields="M").M
     assert close(M, 2.0 * scene.mu, 1e-6 if spin < 1e2 else 1e-9)
     assert close(motion.omega[0], 0.5 * spin, 1e-1)
-
-
-def test_largest_rolling_resistance():
-    """kappa M grows with alpha at every speed, to 0.30905 at most: with more friction nothing holds
-    V.
-    """
-    V = np.geomspace(1e-4, 1e6, 1001)
-    alphas = np.geomspace(1.0001, 1e12, 60)[:, None]
-    M = vr.contact(vr.Scene(alphas, 1.0, 1.0), V, delta=0.0, fields="M").M
-    assert np.diff(M, axis=0).min() > -tol.CONTACT * M.max()
-    assert 0.3090 < M.max() < 0.3091
