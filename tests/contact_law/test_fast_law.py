@@ -38,24 +38,21 @@ def test_onsets_lie_unlike_far_from_free_rolling(index):
     onsets = np.array([found.delta_minus, found.delta_plus])
     exact = 0.5 * np.array(true) / covers.KAPPA
     assert close(onsets, exact, rel=tol.COVER_ONSETS, scale=found.delta_star)
-    inside = found.delta_star * 1e-6 * np.array([1.0, -1.0])
-    for sign in (1.0, -1.0):
-        slips = vr.contact(scene, sign * V, delta=onsets + np.array([[-1.0], [1.0]]) * inside)
+    ends = np.array([-1.0, 1.0])
+    beside = onsets + found.delta_star * 1e-6 * np.outer([1.0, -1.0], ends)
+    for sign in ends:
+        slips = vr.contact(scene, sign * V, delta=beside)
         assert slips.full_slip.tolist() == [[True, True], [False, False]]
-        assert close(slips.Q, [sign * scene.mu * np.array([-1.0, 1.0])] * 2, rel=tol.COVER_ENDS)
+        assert close(slips.Q, [sign * scene.mu * ends] * 2, rel=tol.COVER_ENDS)
 
 
 def test_the_same_nip_has_the_same_losses():
     """Named from the other side V and omega change places; speeds of both names differ by creepage,
     here 1e-6.
     """
-    nip = {"nu": 0.45, "thickness": 0.5, "other_nu": 0.3, "other_thickness": 0.8, "part": 0.6}
-    one, two = (
-        vr.Scene(
-            material=vr.Cover(THREE, on=on, other=ONE, **nip), kappa=1e6, mu=0.3, coupled=False
-        )
-        for on in ("base", "cylinder")
-    )
+    layer = {"nu": 0.45, "thickness": 0.5, "other": ONE, "other_nu": 0.3, "part": 0.6}
+    nips = (vr.Cover(THREE, on=on, **layer) for on in ("base", "cylinder"))
+    one, two = (vr.Scene(material=nip, kappa=1e6, mu=0.3, coupled=False) for nip in nips)
     V = np.array([[1e-8], [1e-7], [1e-6]])
     s = vr.steady(one, V=V, torque=0.3 * np.linspace(-0.9, 0.9, 7))
     turned = vr.steady(two, V=s.omega[..., 0], torque=s.force[..., 0])

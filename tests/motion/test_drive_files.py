@@ -51,8 +51,7 @@ def test_an_ensemble_carries_its_drives():
     data = e.to_xarray()
     assert data["drive_torque"].dims == ("motion", "drive_torque_time")
     assert data["drive_slope"].values.tolist() == [0.01, 0.02]
-    for name in ACTING:
-        assert np.array_equal(data[name].values, e[name])
+    assert all(np.array_equal(data[name], e[name]) for name in ACTING)
 
 
 # --- many corners ---

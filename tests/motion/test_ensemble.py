@@ -19,11 +19,8 @@ T = np.linspace(0.0, 3e-3, 7)
 COUNT = 10
 
 
-def starts():
-    V0, omega0 = np.random.default_rng(1).uniform(-2.0, 2.0, (2, COUNT))
-    V0[:3] = (0.0, 1.0, 0.0)
-    omega0[:3] = (0.0, 1.0, -1.0)
-    return V0, omega0
+STARTS = np.random.default_rng(1).uniform(-2.0, 2.0, (2, COUNT))
+STARTS[:, :3] = [[0.0, 1.0, 0.0], [0.0, 1.0, -1.0]]
 
 
 def from_to(first, last):
@@ -35,10 +32,10 @@ TORQUE = from_to(-0.2, 0.2)
 CORNERS = from_to([0.0, 1.0, 4.0], [0.0, 3.0, 9.0])
 #: scenes, starts, times, and what acts; what is an array is of each
 MANY = {
-    "one scene": (SCENE, starts(), T, {}),
+    "one scene": (SCENE, STARTS, T, {}),
     "a scene each": (
         vr.Scene(4.3, from_to(2.0, 30.0), 0.02, from_to(2e4, 5e3), from_to(0.3, 1.2)),
-        starts(),
+        STARTS,
         T,
         {},
     ),
@@ -95,7 +92,7 @@ def test_ensemble_is_roll_bit_for_bit(monkeypatch, name):
 
 
 def test_summary():
-    result = vr.ensemble(SCENE, *starts(), T)
+    result = vr.ensemble(SCENE, *STARTS, T)
     summary = result.summary(quantiles=(0.25, 0.5))
     assert close(summary.V_mean, result.V.mean(axis=0), 1e-13)
     assert close(summary.V_quantiles.sel(quantile=0.5), np.median(result.V, axis=0), 1e-13)

@@ -48,7 +48,7 @@ def test_outputs_end_where_slip_returns():
     there for ever.
     """
     returned = vr.roll(RETURNING, 1.0, 1.0, [2e-3], rtol=1e-12).switches[0].t
-    for shift in (*np.arange(-3.0, 4.0) * 2.0**-52, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8):
+    for shift in (*np.arange(-3.0, 4.0) * 2.0**-52, 1e-14, 1e-12, 1e-10, 1e-8):
         motion = vr.roll(RETURNING, 1.0, 1.0, [returned * (1.0 + shift)], rtol=1e-12)
         assert motion.success
         assert motion.steps < 500
@@ -87,7 +87,7 @@ def test_rest():
     m = vr.roll(ROUNDED, 1.5, 0.5, np.linspace(0.0, 6e-3, 61), rtol=1e-11, rest=1e-3)
     assert m.status == vr.MotionStatus.RESTED
     free = vr.roll(ROUNDED, 1.5, 0.5, [m.rest_time, 1.0], rtol=1e-11)
-    assert close(max(abs(free.V[0]), abs(free.omega[0])), 1e-3, 1e-9)
+    assert close(np.abs([free.V, free.omega]).max(), 1e-3, 1e-9)
     after = m.t > m.rest_time
     assert not np.any([m.V[after], m.omega[after], m.contact(fields="Q").Q[after]])
     assert np.all(m.regime[after] == REST)
@@ -104,8 +104,8 @@ def test_rest_while_sliding_and_from_the_start():
     for *start, rest in ((0.5, -1.0, 0.2), (0.7058009751523, 1.36067526863356, 1.0)):
         sliding = vr.roll(ROUNDED, *start, [1.0], rest=rest)
         assert math.isnan(sliding.onset_time)
-        there = vr.roll(ROUNDED, *start, [sliding.rest_time], rtol=1e-12)
-        assert close(max(abs(there.V[0]), abs(there.omega[0])), rest, tol.MOTION_RTOL * 1e-8)
+        there = vr.roll(ROUNDED, *start, sliding.rest_time, rtol=1e-12)
+        assert close(np.abs([there.V, there.omega]).max(), rest, tol.MOTION_RTOL * 1e-8)
 
 
 # --- outputs ---

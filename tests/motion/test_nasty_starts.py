@@ -46,7 +46,8 @@ def nasty(scene):
     """Starts (V0, omega0): axes, V + j omega near 0, the stick boundary and delta = 0, subnormal
     numbers.
     """
-    star = vr.contact(scene, [1.0, 1e-3], delta=0.0, fields="delta_star").delta_star
+    speeds = 1.0, 1e-3, 1e-200
+    star = vr.contact(scene, speeds, delta=0.0).delta_star
     opposite = -0.5 / scene.j
     return np.array(
         [
@@ -59,12 +60,11 @@ def nasty(scene):
             (1e-300, 0.0),
             *[(0.5, ulps(opposite, n)) for n in (-2, -1, 0, 1, 2)],
             *[
-                (V, ulps(V * (1.0 + sign * d), n))
-                for V, d in zip((1.0, 1e-3), star)
-                for sign in (-1.0, 1.0)
+                (V, ulps(V * at, n))
+                for V, d in zip(speeds, star)
+                for at in (1.0 - d, 1.0, 1.0 + d)
                 for n in (-1, 0, 1)
             ],
-            *[(V, ulps(V, n)) for V in (1.0, 1e-3, 1e-200) for n in (-1, 0, 1)],
         ]
     )
 

@@ -3,7 +3,6 @@ version.
 """
 
 import re
-from dataclasses import replace
 from functools import cache, partial
 
 import h5py
@@ -64,11 +63,6 @@ def table(name):
     return built(name)
 
 
-@pytest.fixture(scope="module")
-def alphas():
-    return built("alphas")
-
-
 def exact(name, points, fields):
     roller = WHAT[name] if name != "law" else vr.Scene(kappa=1.0, mu=1.0, material=PAIR)
     if name == "alphas":
@@ -103,9 +97,9 @@ def test_stated_errors_are_those_of_other_points(name, table):
             error = np.abs(np.asarray(values[field]) - truth[field]).max()
             assert tol.GRID_LESS * stated <= error <= tol.GRID_MORE * stated, (field, way)
             # the largest occurs at the point that the attributes name, which has six digits
-            place = {axis: float(x) for axis, x in (part.split(" = ") for part in at.split(", "))}
+            place = {axis: float(x) for axis, x in re.findall(r"(\w+) = ([^,]+)", at)}
             assert set(place) == set(table[field].dims)
-            whole = {axis: np.array(place.get(axis, table[axis].values[0])) for axis in points}
+            whole = {axis: table[axis].values[0] for axis in points} | place
             there = vr.tables.Interpolant(table, linear=way == "linear")(field, **place)[field]
             error = abs(there - exact(name, whole, (field,))[field])
             assert close(error, stated, tol.GRID_PLACE), (field, way)
@@ -136,16 +130,16 @@ def test_root_solves_meet_the_rows():
         for way in ("direct", "table")
     )
     assert direct.attrs["method"] == "direct"
+    assert not np.array_equal(direct.Q, rows.Q)
     for name in table_files.fields_of(direct):
-        assert not np.array_equal(direct[name], rows[name]) or name == "delta_star", name
         assert 0.0 <= direct[name].attrs["difference_from_rows"] <= NODES_ALLOWED, name
         size = np.abs(rows[name].values).max()
         assert close(direct[name].values, rows[name].values, NODES_ALLOWED, scale=size), name
 
 
-def test_validation_finds_a_wrong_node(alphas):
-    assert all(check.passed for check in check_table(alphas, 2000, 1))
-    wrong = alphas.copy(deep=True)
+def test_validation_finds_a_wrong_node():
+    assert all(check.passed for check in check_table(built("alphas"), 2000, 1))
+    wrong = built("alphas").copy(deep=True)
     wrong.Q[3, 4, 1] *= 1.0 + 10.0 * NODES_ALLOWED
     wrong.beta.attrs["spline_error"] *= 0.1
     wrong.lam.attrs["spline_error"] = 1.0  # an error as large as the range of lam
@@ -190,7 +184,7 @@ def test_splines_slip_where_the_law_slips(lowest, highest, alpha):
 
 def test_creep_nodes_of_a_cover_reach_full_slip_on_both_sides():
     """Of a thin cover full slip begins at delta_0 +- delta_star, farther from 0 than delta_star."""
-    thin = COVERED.replace(material=replace(RUBBER, thickness=0.004), mu=0.1)
+    thin = COVERED.replace(mu=0.1)
     found = thin.contact(V, delta=0.0)
     assert np.max(np.abs(found.delta_0) / found.delta_star) > 0.1
     grid = vr.tables.build(thin, V, delta=vr.tables.creep_nodes(thin, V, 41))

@@ -48,7 +48,7 @@ def saved(tmp_path_factory):
 
 def same(one, other):
     for field in fields(LawTable):
-        name = "coefficients" if field.name == "steady_coefficients" else field.name
+        name = field.name.removeprefix("steady_")
         np.testing.assert_equal(getattr(one, name), getattr(other, name), name)
 
 

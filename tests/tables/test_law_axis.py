@@ -1,7 +1,6 @@
 """The law of every alpha as a file, and a single alpha out of it."""
 
 import numpy as np
-import pytest
 import tolerances as tol
 from closeness import close
 
@@ -14,13 +13,6 @@ V = np.geomspace(1e-9, 1e9, 50)
 DELTA = np.linspace(-0.1, 0.1, 7)[:, None]
 
 
-@pytest.fixture(scope="module")
-def saved(tmp_path_factory):
-    path = tmp_path_factory.mktemp("law") / "law.nc"
-    vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path)
-    return path
-
-
 def test_stated_errors_are_those_of_other_places():
     law = vr.tables.law(alpha=(3.0, 5.0)).copy(deep=True)
     stated = [law[name].attrs["largest_relative_error"] for name in AXIS_FUNCTIONS]
@@ -31,7 +23,9 @@ def test_stated_errors_are_those_of_other_places():
     assert [check.name[-3:] for check in check_table(law, 3000, 1) if not check.passed] == [": m"]
 
 
-def test_one_alpha_of_a_file(saved):
+def test_one_alpha_of_a_file(tmp_path):
+    saved = tmp_path / "law.nc"
+    vr.tables.save(vr.tables.law(alpha=(1, 30.0)), saved)
     told = vr.tables.info(saved)
     assert all(words in told for words in (": axis, ", "alpha = 1 to 32", "m and N come over c"))
     loaded = vr.load_law(saved, alpha=11.0)

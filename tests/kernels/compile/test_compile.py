@@ -232,9 +232,8 @@ def test_what_others_may_have_written_is_not_run(cache, place):
     with pytest.warns(RuntimeWarning, match=SHARED):
         assert fresh() == 0
     assert not trace.exists()
-    shared.chmod(
-        before if place != "above" else 0o1777
-    )  # sticky as /tmp: nobody there replaces what is another's
+    # sticky as /tmp: nobody there replaces what is another's
+    shared.chmod(before if place != "above" else 0o1777)
     path.write_bytes(stored)
     assert fresh() == 1
 
@@ -244,10 +243,8 @@ def test_what_belongs_to_another_is_not_run(cache):
     (path,) = cache.iterdir()
     trace = plant(path)
     os.chown(cache, NOBODY, -1)
-    with pytest.warns(
-        RuntimeWarning,
-        match=r"compiled kernels are not cached \(.*: it belongs to another user; name",
-    ):
+    words = r"compiled kernels are not cached \(.*: it belongs to another user; name"
+    with pytest.warns(RuntimeWarning, match=words):
         assert fresh() == 0
     assert not trace.exists()
 
