@@ -159,10 +159,8 @@ def test_caught_in_the_imprint():
     assert e.status.tolist() == by_flow.status.tolist() == caught
     assert (by_flow.flow.tolist(), by_flow.switches[0]) == ([False, True, False], 0)
     assert np.isnan(e.onset_time[::2]).all()
-    one = vr.roll(ROLLER, 30.0, 30.0, T[:3], rested=True, unsteady=True)
-    nothing = np.full(3, np.nan)
     assert m.status == vr.MotionStatus.CAUGHT
-    np.testing.assert_array_equal([m.V, *e.V], [nothing, nothing, one.V, nothing])
+    assert np.isnan([m.V, *e.V[::2]]).all()
 
 
 @pytest.mark.parametrize("V0", [0.0, -0.0])

@@ -9,7 +9,6 @@ import numba
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from closeness import close
 
 import viscoroll as vr
@@ -122,17 +121,11 @@ def test_a_grid_of_another_program(tmp_path):
     """
     nodes = 1e-3 * V
     own = vr.tables.build(ROLLER, nodes, delta=vr.tables.creep_nodes(ROLLER, nodes, 81))
-    other = xr.Dataset(
-        {
-            "Q": (("delta", "V"), 1e-3 * own.Q.values.T, {"units": "kN/m"}),
-            "M": ("V", 1e3 * own.M.values, {"units": "N mm/m"}),
-        },
-        {
-            "V": ("V", 1e3 * nodes, {"units": "mm s-1"}),
-            "delta": ("delta", own.delta.values, {"units": "1"}),
-        },
-        {"R": ROLLER.R, "mu": ROLLER.mu, "load": ROLLER.load},
-    )
+    other = own[["Q", "M"]].transpose().drop_attrs()
+    other.attrs = {"R": ROLLER.R, "mu": ROLLER.mu, "load": ROLLER.load}
+    other["delta"].attrs["units"] = "1"
+    for name, unit, factor in (("Q", "kN/m", 1e-3), ("M", "N mm/m", 1e3), ("V", "mm s-1", 1e3)):
+        other[name] = (factor * other[name]).assign_attrs(units=unit)
     other.to_netcdf(tmp_path / "other.nc", engine="scipy", format="NETCDF3_64BIT")
     speeds = np.array([1e-3, -3e-3, 1e-4, 2e-3])
     omega = speeds * np.array([1.001, 1.005, 0.99, 1.5]) / ROLLER.R
