@@ -64,10 +64,11 @@ def test_dundurs_constant_as_contact_publishes_it():
     rows = pd.read_csv(ROOT / "data/reference/bentall.csv")
     one = (1.0 - 0.31) / 23000.0
     other = (1.0 - 0.28) / 82000.0
-    elastic = vr.Prony.elastic()
-    pair = vr.Bodies(elastic, elastic, share=other / (one + other), poisson=(0.28, 0.31))
+    elastic = SERIES["elastic"]
+    bodies = vr.Bodies(elastic, elastic, share=other / (one + other), poisson=(0.28, 0.31))
+    pair = CoupledPair.of_scene(scene_of(bodies))
     for row in rows[rows.mu < math.inf].itertuples():
-        states = CoupledRow(CoupledPair.of_scene(scene_of(pair)), 1.0, row.mu)
+        states = CoupledRow(pair, 1.0, row.mu)
         creep = brentq(
             lambda x, on=states, Q=row.Q_over_mu_P: on.states([x]).Q_over_mu[0] - Q,
             *states.onsets(),

@@ -48,14 +48,6 @@ def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
     assert balance(m) <= 1e-7
 
 
-def test_an_exception_of_a_callable_passes():
-    def fails(t):
-        raise RuntimeError("sensor")
-
-    with pytest.raises(RuntimeError, match="sensor"):
-        vr.roll(ROLLER, 1.0, 1.0, T, force=fails)
-
-
 def test_the_end_of_a_motion_of_bodies_that_differ():
     """V decays by a closed form, as of like bodies: steps went on to the smallest number, 430 of
     them.

@@ -3,6 +3,7 @@
 """
 
 import tracemalloc
+from functools import partial
 
 import numpy as np
 import tolerances as tol
@@ -57,26 +58,18 @@ def test_an_ensemble_carries_its_drives():
 # --- many corners ---
 
 
-def pieces_of(drive, end):
-    """The pieces of a drive of one motion."""
-    functions = drive_functions.prepare_drive(drive, 0.1, 0.1, end, 1e-8).functions
-    assert functions is not None
-    return functions.pieces
-
-
 def test_memory_of_a_schedule_is_proportional_to_its_corners():
-    count = 50_000
-    times = np.arange(count) * 1e-3
-    drive = Drive(
-        torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times)
-    )
-    assert pieces_of(Drive(torque=0.1), 1.0).size  # imports take memory too
+    times = np.arange(50_000) * 1e-3
+    torque = vr.Schedule(times, 0.1 * np.sin(times))
+    drive = Drive(torque=torque, force=vr.Schedule(times + 5e-4, 0.0 * times))
+    prepare = partial(drive_functions.prepare_drive, drive, 0.1, 0.1, times[-1], 1e-8)
+    assert prepare().functions.pieces.size  # imports take memory too
     tracemalloc.start()
-    pieces = pieces_of(drive, times[-1])
+    pieces = prepare().functions.pieces
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert pieces.shape[1] == 2 * count - 2
-    assert peak <= tol.BYTES_A_CORNER * 2 * count
+    assert pieces.shape[1] == 2 * times.size - 2
+    assert peak <= tol.BYTES_A_CORNER * 2 * times.size
 
 
 def test_a_jump_of_one_slow_motion_is_refused_beside_fast_ones():
