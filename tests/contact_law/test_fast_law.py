@@ -13,7 +13,7 @@ from drives import solved
 import viscoroll as vr
 from pipeline.evidence.measure import covers
 
-ONE, THREE, ELASTIC = (covers.MATERIALS[name] for name in ("one", "three", "elastic"))
+ONE, THREE = (covers.MATERIALS[name] for name in ("one", "three"))
 
 
 @pytest.mark.parametrize("index", [0, 5, 15, 20])

@@ -16,7 +16,6 @@ pytestmark = pytest.mark.filterwarnings(
 )  # the paper's own scene is beyond the model
 
 T = np.linspace(0.0, 8.0, 33)
-BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
 
 
 def test_how_a_schedule_is_written():

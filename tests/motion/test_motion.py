@@ -20,12 +20,10 @@ pytestmark = pytest.mark.filterwarnings(
 
 ROUNDED = vr.presets.PAPER_SECTION_5_ROUNDED
 #: full slip returns: theory, Sect. 3
-RETURNING = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4, j=0.5)
+RETURNING = ROUNDED.replace(mu=0.01)
 #: mu kappa where the maximum over V of M (1 - j)/(2 (1 + j)) is mu: 0.0411, alpha = 11, j = 1/2
 THRESHOLD = 0.24659784 / 6.0
 
-
-REST = 2
 
 # --- the paper's Sect. 5 ---
 
@@ -90,7 +88,7 @@ def test_rest():
     assert close(np.abs([free.V, free.omega]).max(), 1e-3, 1e-9)
     after = m.t > m.rest_time
     assert not np.any([m.V[after], m.omega[after], m.contact(fields="Q").Q[after]])
-    assert np.all(m.regime[after] == REST)
+    assert set(m.regime[after]) == {2}
     assert close(m.x[after], free.x[0], 1e-10)
     left = (1.0 + ROUNDED.j) * 1e-3 / ROUNDED.gamma  # over 1 - 1/alpha, at low speed
     assert close(free.x[1] - free.x[0], 1.1 * left, 1e-2)

@@ -13,7 +13,6 @@ import viscoroll as vr
 from viscoroll.motion.ensemble import FIELDS
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
-METHODS = ("integrate", "flow")
 #: mu kappa at alpha = 11, j = 1/2 where full slip returns: the maximum over V of kappa M over 6
 RETURN = 0.24659784 / 6.0
 SCENES = {
@@ -69,8 +68,8 @@ def nasty(scene):
     )
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", list(SCENES))
+@pytest.mark.parametrize("method", ["integrate", "flow"])
+@pytest.mark.parametrize("name", SCENES)
 def test_finite_in_bounded_steps(name, method):
     """Any end time from 1e-12 to 1e12 decay times; the mirrored starts give the mirrored motions,
     bit for bit.
