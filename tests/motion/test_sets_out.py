@@ -57,7 +57,6 @@ def test_a_start_of_next_to_nothing(drive, creep):
         assert close(m.V, plain.V, 30e-8, scale=max(fastest(plain), V0))
 
 
-@pytest.mark.filterwarnings("ignore:roll")
 def test_to_and_fro_where_friction_is_strong():
     """Jumps of force and torque take V to 0 while d relaxes from nowhere: a tenth ended in steps
     too small.
@@ -72,12 +71,9 @@ def test_to_and_fro_where_friction_is_strong():
         vr.ensemble(scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque)
         for rtol in (1e-6, 1e-10)
     )
-    # where the law leaves two ways on it is said so
-    ends = {vr.MotionStatus.DONE, vr.MotionStatus.UNDECIDED}
-    assert ends >= set(found.status) == set(best.status)
-    assert best.success.mean() > 0.9
-    done = found.success & best.success
-    speeds, exact = (np.stack([e.V, e.omega])[:, done] for e in (found, best))
+    assert found.success.all()
+    assert best.success.all()
+    speeds, exact = (np.stack([e.V, e.omega]) for e in (found, best))
     so_far = np.maximum.accumulate(np.abs(exact).max(axis=0), axis=1)
     assert close(speeds, exact, 30e-6, scale=so_far)
 

@@ -28,7 +28,6 @@ STEEL = vr.Material.elastic(2e11, 0.3, name="steel")
 GIVEN = {
     "alpha": (11.0,),
     "elastic": (1.0,),
-    "series": (SERIES,),
     "bodies": (vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3, (0.3, 0.45)),),
     "material": (RUBBER,),
     "on steel": (RUBBER, STEEL),

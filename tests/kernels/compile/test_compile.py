@@ -10,7 +10,6 @@ import pwd
 import re
 import shutil
 import threading
-import warnings
 import zlib
 from pathlib import Path
 from types import SimpleNamespace
@@ -249,6 +248,7 @@ def test_what_belongs_to_another_is_not_run(cache):
     assert not trace.exists()
 
 
+@pytest.mark.filterwarnings("ignore:compiled kernels are not cached")
 def test_a_group_of_one_is_no_others(cache, monkeypatch):
     """As where every user has a group that bears their name, and a umask of 002."""
     cache.chmod(0o775)
@@ -263,9 +263,7 @@ def test_a_group_of_one_is_no_others(cache, monkeypatch):
         monkeypatch.setattr(grp, "getgrgid", lambda group, found=found: found)
         monkeypatch.setattr(cache_folder, "_SUPERUSERS", -1)
         cache_module.warn_once.cache_clear()
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            assert fresh() == hits
+        assert fresh() == hits
 
 
 def test_folders_are_made_for_oneself(tmp_path, monkeypatch):
