@@ -5,9 +5,13 @@ words.
 import math
 from typing import NamedTuple
 
+from scipy.integrate import solve_ivp
+
 import viscoroll as vr
 
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+#: the paper's, in which a time of 1/gamma is 1
+PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
 #: whose law is unsteady
 RUBBER = ROLLER.replace(gamma=18.0)
 #: fits of src/viscoroll/datasets/dma.csv, and a roller of them as of docs/validity.md: 0.1 m,
@@ -40,3 +44,15 @@ def given(plain):
     if "times" in plain:
         return vr.Schedule(**plain)
     return vr.Feedback(**plain | {"value": given(plain["value"])})
+
+
+def solved(scene, V0, omega0, t, force=0.0, torque=0.0):
+    """V and omega at t by Radau's method on the equations of motion with the bound law."""
+    law = vr.law(scene)
+
+    def rates(_, speeds):
+        loads = law(*speeds)
+        pull = loads.Q - loads.M_half_space + force
+        return scene.gamma * pull, scene.gamma / scene.j * (torque - loads.Q - loads.M_cylinder)
+
+    return solve_ivp(rates, (0.0, t), (V0, omega0), "Radau", rtol=1e-10, atol=1e-12).y[:, -1]

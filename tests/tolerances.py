@@ -42,7 +42,7 @@ COMPILED_SLOPE = 1e-3
 #: second slope of Q jumps.  Slopes over load R/V, of which they are up to 11: 4e-2 seen there.
 COARSE_GRID = 2e-4
 COARSE_GRID_SLOPE = 0.1
-#: The largest error of 20,000 other points over that of the 100,000 which a grid states: never much
+#: The largest error of 8,000 other points over that of the 100,000 which a grid states: never much
 #: more, and no loose bound.
 GRID_MORE = 1.5
 GRID_LESS = 0.3
@@ -452,10 +452,8 @@ FMU_NEAR_REST = 1e-3
 # --- callables as polynomials (motion/test_fitted.py) ---
 #: V0/R through the units of a scene and back: two roundings each.
 UNITS = 1e-15
-#: Values taken and pieces made; measured 2,000 to 21,000 and up to 76: the root has no bounds to
-#: its slope at 0.
+#: Values taken; measured 2,000 to 21,000: the root has no bounds to its slope at 0.
 CALLABLE_VALUES = 25_000
-CALLABLE_PIECES = 100
 #: A tenth of rtol, by what was seen in some ten places a node: twice that elsewhere.
 CALLABLE_SHARE = 0.2
 #: Of the largest value of all: what counts as no less than so large; five times what the rounding

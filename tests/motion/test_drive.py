@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from drives import ROLLER
+from drives import PAPER, ROLLER
 
 import viscoroll as vr
 from pipeline.evidence.prove.motion import balance, speed_error
@@ -15,9 +15,7 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
 )  # the paper's own scene is beyond the model
 
-SCENE = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
 T = np.linspace(0.0, 8.0, 33)
-BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
 
 
 def test_how_a_schedule_is_written():
@@ -34,10 +32,6 @@ def test_how_a_schedule_is_written():
         for q in (vr.Schedule([0.0, 8.0], [0.0, 0.08]), cut, lambda t: 0.01 * t)
     )
     assert all(speed_error(other, ramp, so_far=True).max() <= 30e-9 for other in others)
-    jumps = vr.roll(
-        ROLLER, 0.2, 0.2, T, torque=vr.Schedule([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03])
-    )
-    assert jumps.torque[T == 2.0] == 0.03  # the later side
 
 
 @pytest.mark.parametrize("share", [0.7, 1.3])
@@ -53,14 +47,6 @@ def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
     assert balance(m) <= 1e-7
 
 
-def test_an_exception_of_a_callable_passes():
-    def fails(t):
-        raise RuntimeError("sensor")
-
-    with pytest.raises(RuntimeError, match="sensor"):
-        vr.roll(ROLLER, 1.0, 1.0, T, force=fails)
-
-
 def test_the_end_of_a_motion_of_bodies_that_differ():
     """V decays by a closed form, as of like bodies: steps went on to the smallest number, 430 of
     them.
@@ -71,8 +57,8 @@ def test_the_end_of_a_motion_of_bodies_that_differ():
     m = vr.roll(scene, 1.0, 0.0, [0.3, 0.5, 1.0, 2.0, 10.0])
     like = vr.roll(scene.replace(material=modes), 1.0, 0.0, m.t)
     assert m.steps <= 1.5 * like.steps
-    rate = -np.diff(np.log(m.V[1:4])) / np.diff(m.t[1:4])
-    assert close(rate[1], rate[0], 1e-9)
+    fell = np.diff(np.log(m.V[1:4]))  # in 0.5 and 1
+    assert close(fell[1], 2.0 * fell[0], 1e-9)
     assert m.V[-1] == 0.0
 
 
@@ -81,9 +67,9 @@ def test_traction_of_the_smallest_creep(V):
     """The force that a prescribed V asks for is M/2 - Q, and Q what the contact says of creep that
     is nearly none.
     """
-    edge = vr.contact(SCENE, V, delta=0.0).delta_star
+    edge = vr.contact(PAPER, V, delta=0.0).delta_star
     for share in (-9e-5, 3e-5, 9e-5):
         omega = V * (1.0 + share * edge)
-        state = vr.contact(SCENE, V, omega=omega)
-        held = vr.roll(SCENE, None, omega, [0.0, 1e-9], V=V)
+        state = vr.contact(PAPER, V, omega=omega)
+        held = vr.roll(PAPER, None, omega, [0.0, 1e-9], V=V)
         assert close(0.5 * state.M - held.force[0], state.Q, tol.SMALL_TRACTION)

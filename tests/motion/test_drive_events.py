@@ -23,11 +23,12 @@ def test_a_faint_push_the_other_way(share):
     """A ramp that begins on the other side, by a share of what it reaches: V turns at twice the
     time of its zero.
     """
-    scene = ROLLER
     t = np.linspace(0.0, 8.0, 33)
-    plain = vr.roll(scene, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [0.0, 0.2]))
-    m = vr.roll(scene, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [-0.2 * share, 0.2]))
-    assert m.status == vr.MotionStatus.DONE
+    plain, m = (
+        vr.roll(ROLLER, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [first, 0.2]))
+        for first in (0.0, -0.2 * share)
+    )
+    assert m.success
     assert m.steps <= 3 * plain.steps
     assert close(m.reversals, [16.0 * share], 1e-3)
     assert close(m.V[1:], plain.V[1:], 100.0 * share + BOUND * 1e-10)
@@ -69,15 +70,13 @@ def test_a_locked_cylinder_skids_to_rest(pull):
     draw = np.random.default_rng(7)
     rtol = 1e-8
     mu = 0.2
-    count = 500
-    V0 = 10.0 ** draw.uniform(-2.0, 1.0, count)
-    scene = ELASTIC.replace(kappa=10.0 ** draw.uniform(-1.0, 2.0, count))
-    t = np.geomspace(0.01, 100.0, 400)
+    V0, kappa = 10.0 ** draw.uniform([[-2.0], [-1.0]], [[1.0], [2.0]], (2, 500))
+    scene = ELASTIC.replace(kappa=kappa)
+    t = np.geomspace(0.01, 100.0, 50)
     force = vr.Schedule([0.0, t[-1]], [0.0, pull * t[-1]])
     e = vr.ensemble(scene, V0, 0.0, t, rtol=rtol, brake=10.0, force=force, fields=("V", "regime"))
-    end = (
-        2.0 * V0 / mu / (1.0 + np.sqrt(1.0 - 2.0 * pull * V0 / mu**2))
-    )  # of V = V0 - mu t + pull t^2/2
+    # of V = V0 - mu t + pull t^2/2
+    end = 2.0 * V0 / mu / (1.0 + np.sqrt(1.0 - 2.0 * pull * V0 / mu**2))
     skids = t < end[:, None]
     V = np.where(skids, V0[:, None] - mu * t + 0.5 * pull * t**2, 0.0)
     assert (np.abs(e.V - V).max(axis=1) <= BOUND * rtol * V0).all()
@@ -93,9 +92,8 @@ def test_a_brake_that_begins_at_0():
     rtol = 1e-8
     t = np.linspace(0.0, 6.0, 25)
     m = vr.roll(ELASTIC, 1.0, -1.0, t, rtol=rtol, brake=vr.Schedule([0.0, 6.0], [0.0, 1.8]))
-    stop = (
-        np.sqrt(0.34) - 0.2
-    ) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
+    # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
+    stop = (np.sqrt(0.34) - 0.2) / 0.3
     omega = np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0)
     locks_and_holds(m, [stop, 5.0], np.maximum(1.0 - 0.2 * t, 0.0), omega, BOUND * rtol)
 
@@ -106,19 +104,14 @@ def test_a_brake_gives_way_to_a_ramp(most):
     brake.
     """
     scene = vr.Scene(alpha=1.0, kappa=15.0, mu=0.05, gamma=12.0, j=0.66)
-    t = np.linspace(0.0, 1.0, 21)
-    rtol = 1e-8
-    slope = -0.3
-    free = t >= most / 0.3
-    m = vr.roll(
-        scene, 0.0, 0.0, t, rtol=rtol, brake=most, torque=vr.Schedule([0.0, 1.0], [0.0, slope])
-    )
-    since = np.append(0.0, t[free] - most / 0.3)
-    plain = vr.roll(scene, 0.0, 0.0, since, rtol=rtol, torque=vr.Schedule([0.0, 1.0], [0.0, slope]))
-    assert m.status == vr.MotionStatus.DONE
-    assert not m.V[~free].any()
-    assert close(m.V[free], plain.V[1:], BOUND * rtol)
-    assert close(m.omega[free], plain.omega[1:], BOUND * rtol)
+    ramp = vr.Schedule([0.0, 1.0], [0.0, -0.3])
+    since = np.linspace(0.0, 0.6, 13)
+    t = most / 0.3 + since
+    t[0] *= 0.5  # the brake holds
+    m = vr.roll(scene, 0.0, 0.0, t, rtol=1e-8, brake=most, torque=ramp)
+    plain = vr.roll(scene, 0.0, 0.0, since, rtol=1e-8, torque=ramp)
+    assert m.success
+    assert close((m.V, m.omega), (plain.V, plain.omega), BOUND * 1e-8)
 
 
 def test_a_brake_lets_go_after_what_it_takes_turned():
@@ -128,13 +121,9 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
     An elastic cylinder skids with omega = 0: the brake takes q + mu = 0.4 t - 0.1 of up to 0.15 -
     0.05 t.
     """
-    t = np.linspace(0.0, 2.0, 9)
+    torque, brake = (vr.Schedule([0.0, 2.0], ends) for ends in ([-0.3, 0.5], [0.15, 0.05]))
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        drive = {
-            "torque": vr.Schedule([0.0, 2.0], [-0.3, 0.5]),
-            "brake": vr.Schedule([0.0, 2.0], [0.15, 0.05]),
-        }
-        m = vr.roll(ELASTIC, 1.0, 0.0, t, rtol=rtol, **drive)
+        m = vr.roll(ELASTIC, 1.0, 0.0, 2.0, rtol=rtol, torque=torque, brake=brake)
         assert m.switches[0].regime == "full slip"
         assert close(m.switches[0].t, 0.25 / 0.45, BOUND * rtol)
 
@@ -156,8 +145,7 @@ def test_a_prescribed_speed_that_comes_to_0(values, turns, rtol):
     # sliding at V = 0 it spins down by 0.1 a unit of time
     stands = vr.Schedule([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, values[-1]])
     still = vr.roll(scene, None, -0.1, [2.6, 2.9, 4.0], rtol=rtol, V=stands)
-    assert still.status == vr.MotionStatus.DONE
-    assert not still.omega[:2].any()
+    assert (still.success, *still.omega[:2]) == (True, 0.0, 0.0)
 
 
 def test_a_brake_that_just_holds_a_slope():
@@ -181,14 +169,3 @@ def test_a_force_or_torque_above_the_brake_by_rounding_is_held_and_beyond_it_cre
         )
         assert moved.status == 0
         assert moved.V[0] == 0.0 if ulps < 10 else 0.0 < moved.V[0] < 2.0 * ulps * 2.0**-52
-
-
-def test_a_free_start_on_a_cover_at_the_least_speeds():
-    """The equations are linear there, so that V over V0 depends on V0 no more."""
-    layer = vr.Cover(vr.Prony([2.0, 6.0], [1.0, 0.01]), nu=0.5, thickness=0.5, on="base")
-    cover = vr.Scene(material=layer, kappa=10.0, mu=0.3, gamma=0.5, coupled=False)
-    left = [
-        vr.roll(cover, V0, 0.0, [1.0], rtol=1e-10).V[0] / V0
-        for V0 in (1e-50, 1e-149, 1e-151, 1e-200)
-    ]
-    assert close(np.array(left[1:]), left[0], BOUND * 1e-10)

@@ -3,20 +3,20 @@ drive.
 """
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
 from drives import ROLLER
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll.motion import drive_pieces
-from viscoroll.motion.drive_pieces import piecewise
 
 END = 20.0
-#: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a
-#: slope without bounds
+#: smooth and steep; from next to nothing; with corners; with jumps; with a slope without bounds
 CALLABLES = {
     "tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 0.02)),
     "steep tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 1e-6)),
@@ -24,10 +24,8 @@ CALLABLES = {
     "exp(-1/t)": lambda t: 0.05 * math.exp(-1.0 / t) if t > 0.0 else 0.0,
     "sine": lambda t: 0.1 * math.sin(2.0 * math.pi * t),
     "half waves": lambda t: 0.1 * max(0.0, math.sin(t)),
-    "cubes": lambda t: max(0.0, math.sin(t) - 0.5) ** 3,
     "chain": lambda t: float(np.interp(t, [0.0, 1.0, 2.0, 7.0], [0.0, 0.1, -0.02, 0.05])),
     "root": lambda t: 0.02 * math.sqrt(t),
-    "jump": lambda t: 0.1 * (t > 0.3),
     "square wave": lambda t: 0.1 * math.copysign(1.0, math.sin(3.0 * t)),
 }
 
@@ -44,15 +42,6 @@ class Counted:
         return float(self.function(t))
 
 
-def values(curve, t):
-    """A curve of one motion at these times."""
-    (starts,) = curve.starts
-    (ends,) = curve.ends
-    k = np.searchsorted(starts, t, side="right") - 1
-    x = 2.0 * (t - starts[k]) / (ends[k] - starts[k]) - 1.0
-    return (curve.terms[0, k] * x[:, None] ** np.arange(curve.terms.shape[-1])).sum(axis=1)
-
-
 @pytest.mark.parametrize("rtol", [1e-2, 1e-6, 1e-12])
 @pytest.mark.parametrize("name", CALLABLES)
 def test_a_callable_is_met_in_few_values(name, rtol):
@@ -60,42 +49,32 @@ def test_a_callable_is_met_in_few_values(name, rtol):
     took no end of them.
     """
     function = Counted(CALLABLES[name])
-    curve = piecewise("torque", function, END, rtol)
+    t = np.sort(np.random.default_rng(3).uniform(0.0, END, 2000))
+    m = vr.roll(ROLLER, 0.5, 0.5, t, rtol=rtol, torque=function)
     assert function.calls <= tol.CALLABLE_VALUES
-    assert curve.starts.size <= tol.CALLABLE_PIECES
-    assert (np.diff(curve.starts) > 0.0).all()
-    t = np.sort(np.random.default_rng(3).uniform(0.0, END, 5000))
     exact = np.array([function(one) for one in t])
     so_far = np.maximum.accumulate(np.abs(exact))
-    largest = np.abs(exact).max()
-    scale = np.maximum(so_far, tol.CALLABLE_FOOT * largest)
-    rounding = tol.CALLABLE_ROUNDING * largest / rtol
-    assert close(
-        values(curve, t), exact, tol.CALLABLE_SHARE * rtol, scale=np.maximum(scale, rounding)
-    )
-    assert curve.error <= tol.CALLABLE_SHARE * max(rtol * largest, tol.CALLABLE_ROUNDING * largest)
+    largest = so_far[-1]
+    least = max(tol.CALLABLE_FOOT, tol.CALLABLE_ROUNDING / rtol) * largest
+    share = tol.CALLABLE_SHARE * rtol
+    assert close(m.torque, exact, share, scale=np.maximum(so_far, least))
+    assert m.drive_error <= tol.CALLABLE_SHARE * max(rtol, tol.CALLABLE_ROUNDING) * largest
 
 
 def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many
     values as it may.
     """
-    monkeypatch.setattr(drive_pieces, "MOST", 20_000)
+    monkeypatch.setattr(drive_pieces, "MOST", 5_000)
+    words = "torque = a function that piecewise polynomials cannot approximate near t = "
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
-        with pytest.raises(
-            vr.ParameterError,
-            match=(
-                r"^torque = a function that piecewise polynomials cannot approximate near t = "
-                r".*Schedule"
-            ),
-        ):
-            vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
+        refused(partial(vr.roll, ROLLER, 0.5, 0.5, END, torque=function), words, "Schedule")
         assert function.calls <= 2 * drive_pieces.MOST
 
 
-@pytest.mark.parametrize("many", [False, True])
-def test_a_narrow_pulse_is_seen_where_it_is_resolved(many):
+@pytest.mark.parametrize("roll", [vr.roll, vr.ensemble])
+def test_a_narrow_pulse_is_seen_where_it_is_resolved(roll):
     """A pulse of END/8000, between two of the thousand samples that are taken without
     ``resolve``.
     """
@@ -106,7 +85,6 @@ def test_a_narrow_pulse_is_seen_where_it_is_resolved(many):
         return 20.0 * (at < t < at + width)
 
     corners = vr.Schedule([at, at, at + width, at + width], [0.0, 20.0, 20.0, 0.0])
-    roll = vr.ensemble if many else vr.roll
     exact, free = (roll(ROLLER, 0.1, 0.1, [END], torque=torque).V for torque in (corners, None))
     missed = roll(ROLLER, 0.1, 0.1, [END], torque=pulse).V
     seen = roll(ROLLER, 0.1, 0.1, [END], torque=pulse, resolve=0.5 * width).V
@@ -121,9 +99,9 @@ def test_speeds_prescribed_by_callables(name):
     t = np.linspace(0.0, END, 41)
     exact = np.array([CALLABLES[name](one) for one in t])
     best = vr.roll(ROLLER, 0.0, None, t, rtol=1e-12, omega=CALLABLES[name])
-    for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
+    for rtol in (1e-2, 1e-8):
         m = vr.roll(ROLLER, 0.0, None, t, rtol=rtol, omega=CALLABLES[name])
-        assert m.status == vr.MotionStatus.DONE
+        assert m.success
         assert m.steps < tol.CALLABLE_STEPS
         assert close(m.omega, exact, rtol, scale=np.abs(exact).max())
         assert close(m.V, best.V, rtol, scale=np.abs(exact).max())

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import PAPER
 from maps import beside, decay_time
 from memory import forget
 
 import viscoroll as vr
-from viscoroll.core.errors import MotionStatus
 from viscoroll.motion import flow
 from viscoroll.motion.ensemble import FIELDS
 from viscoroll.motion.many_motions import FLOW_PAYS
@@ -22,7 +22,7 @@ T = np.linspace(0.0, 3e-3, 16)
 
 # the paper's own scene is beyond the model
 pytestmark = [
-    pytest.mark.usefixtures("own_maps"),
+    pytest.mark.usefixtures("maps_of_this_file"),
     pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
 ]
 
@@ -31,29 +31,21 @@ def starts(count, seed, scene, top=2.0):
     """Any speeds, a fifth of them inside the stick band or near it, some on the axes."""
     rng = np.random.default_rng(seed)
     V0, omega0 = rng.uniform(-top, top, (2, count))
-    inside = slice(0, count // 5)
-    omega0[inside] = V0[inside] * (
-        1.0 + scene.mu / scene.kappa * rng.uniform(-0.6, 0.6, count)[inside]
-    )
+    few = count // 5
+    omega0[:few] = V0[:few] * (1.0 + scene.mu / scene.kappa * rng.uniform(-0.6, 0.6, few))
     V0[-3] = 0.0
     omega0[-2] = 0.0
     return V0, omega0
 
 
-PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0)
 THREE = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
-RUBBER = vr.Scene(material=THREE, kappa=20.0, mu=0.3, gamma=1.0)
+PAIR = vr.Scene(material=vr.Bodies(THREE, THREE, 0.5), kappa=20.0, mu=0.3, gamma=1.0)
 #: scene, highest speed; any scenes are those of claims (prove/motion.py, mapped)
 SCENES = {
     "paper": (SCENE, 2.0),
-    "kappa 29": (PAPER.replace(kappa=29.1), 2.0),
     "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0),
-    "alpha 2": (PAPER.replace(alpha=2.0), 2.0),
-    "j 1": (PAPER.replace(j=1.0), 2.0),
     "j 1.5": (PAPER.replace(j=1.5), 2.0),
-    "rubber": (RUBBER, 2.0),
-    "pair": (RUBBER.replace(material=vr.Bodies(THREE, THREE, 0.5)), 2.0),
-    "slow": (PAPER, 1e-4),
+    "pair": (PAIR, 2.0),
     "fast": (PAPER, 2000.0),
 }
 
@@ -64,11 +56,11 @@ def test_as_the_integrator_to_its_stated_error(name):
     integrated.
     """
     scene, top = SCENES[name]
-    V0, omega0 = starts(60, 2, scene, top)
+    V0, omega0 = starts(40, 2, scene, top)
     t = np.concatenate([np.geomspace(1e-7, 1e-1, 7), [1.0, 10.0, 200.0]]) * decay_time(scene)
     mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
     rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
-    assert (mapped.status == MotionStatus.DONE).all()
+    assert mapped.success.all()
     assert np.array_equal(mapped.switches, rolled.switches)
     earliest = 6e-3 * decay_time(scene)
     assert close(mapped.onset_time, rolled.onset_time, tol.FLOW_ONSET, scale=earliest)
@@ -76,28 +68,25 @@ def test_as_the_integrator_to_its_stated_error(name):
     assert np.array_equal(mapped.regime[by], rolled.regime[by])
     assert by.mean() > 0.9
     built = flow.flow_map(scene, max(np.abs(V0).max(), np.abs(omega0).max()))
-    stated = dict(zip(("speed", "path", "loss"), built.errors, strict=True))
-    allowed = {"speed": tol.FLOW_SPEED, "path": tol.FLOW_PATH, "loss": tol.FLOW_LOSS}
-    assert all(stated[kind] < allowed[kind] for kind in stated), stated
     speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
     moved = np.maximum.accumulate(np.maximum(np.abs(rolled.x), np.abs(rolled.angle)), axis=1)
     # what is left to rest is at most V times the decay time
     path = moved + 1e-5 * decay_time(scene) * speed[:, :1]
     energy = np.broadcast_to(0.5 * (V0**2 + scene.j * omega0**2)[:, None], path.shape)
-    kinds = dict.fromkeys(("V", "omega"), ("speed", speed)) | dict.fromkeys(
-        ("x", "angle"), ("path", path)
-    )
-    for field, (kind, size) in (kinds | dict.fromkeys(LOSSES, ("loss", energy))).items():
-        found, exact = (getattr(many, field)[by] for many in (mapped, rolled))
-        assert close(found, exact, stated[kind], scale=size[by], what=field)
+    allowed = tol.FLOW_SPEED, tol.FLOW_PATH, tol.FLOW_LOSS
+    kinds = ("V", "omega"), ("x", "angle"), LOSSES
+    for stated, most, size, names in zip(built.errors, allowed, (speed, path, energy), kinds):
+        assert stated < most, names
+        for name in names:
+            assert close(mapped[name][by], rolled[name][by], stated, scale=size[by], what=name)
 
 
 def deep():
     """Starts over 15 octaves of speed, and at outputs from a hundredth of the boundary layer on."""
     rng = np.random.default_rng(11)
-    V0 = 2.0 ** rng.uniform(-14.0, 1.0, 400) * rng.choice([-1.0, 1.0], 400)
-    found = vr.contact(PAPER, abs(V0), delta=0.0, fields=("delta_star",)).delta_star
-    omega0 = V0 * (1.0 + found * rng.uniform(-1.0, 1.0, 400))
+    V0 = 2.0 ** rng.uniform(-14.0, 1.0, 200) * rng.choice([-1.0, 1.0], 200)
+    star = vr.contact(PAPER, V0, delta=0.0).delta_star
+    omega0 = V0 * (1.0 + star * rng.uniform(-1.0, 1.0, 200))
     return PAPER, V0, omega0, np.array([1e-2, 1e-1, 1.0, 10.0]) * 2.0**-5 / PAPER.kappa
 
 
@@ -120,27 +109,25 @@ def test_all_of_these_are_in_the_map(name):
     assert beside(*ALL_MAPPED[name]()).flow.all()
 
 
-#: scenes in which the stiff rate at onset is not far above the slow one; kappa V0, kappa omega0
-NEAR_RATES = [
-    ((22.822343517896204, 0.8333393570053901, 2.219273908549868, 1.0, 0.2688387197363067), start)
-    for start in ((1.4596, 1.41747), (1.20256, 1.1686))
-] + [
-    (
-        (1432.3597795448325, 0.8023587553693244, 0.5276418850483104, 1.0, 0.7653652644478643),
-        (1.00276, 0.996196),
-    )
-]
-
-
-@pytest.mark.parametrize(("scene", "start"), NEAR_RATES)
+@pytest.mark.parametrize(
+    ("scene", "start"),
+    [
+        (
+            (22.822343517896204, 0.8333393570053901, 2.219273908549868, 1.0, 0.26883872),
+            (1.4596, 1.41747),
+        ),
+        ((1432.3597795448325, 0.8023587553693244, 0.5276418, 1.0, 0.76536526), (1.00276, 0.996196)),
+    ],
+)
 def test_start_near_the_slow_manifold_where_rates_are_near(scene, start):
-    """V changes much within the boundary layer, and the search for an earlier entry may fail: it
-    must notice.
+    """The stiff rate at onset is not far above the slow one: V changes much within the boundary
+    layer, and the search for an earlier entry may fail: it must notice.  Starts are kappa V0 and
+    kappa omega0.
     """
     scene = vr.Scene(*scene)
-    spread = 1.0 + np.linspace(-1e-3, 1e-3, 41)
     V0, omega0 = np.array(start) / scene.kappa
     t = np.geomspace(1e-3, 5.0, 8) * decay_time(scene)
+    spread = np.linspace(1.0 - 1e-3, 1.0 + 1e-3, 41)
     beside(scene, np.full(41, V0), omega0 * spread, t, rtol=1e-4)
 
 
@@ -149,7 +136,7 @@ def test_rest(rest):
     """Of any threshold: one above all speeds of the tables leaves every motion to the
     integrator.
     """
-    V0, omega0 = starts(100, 7, SCENE)
+    V0, omega0 = starts(40, 7, SCENE)
     V0[:2] = 1e-4
     omega0[:2] = -1e-4
     t = np.linspace(0.0, 2e-2, 9)
@@ -161,16 +148,16 @@ def test_rest(rest):
     assert np.array_equal(mapped.status, rolled.status)
     assert np.array_equal(mapped.regime, rolled.regime)
     assert close(mapped.rest_time, rolled.rest_time, tol.FLOW_PATH)
-    assert close(mapped.x, rolled.x, tol.FLOW_PATH, scale=5e-8)
-    assert close(mapped.angle, rolled.angle, tol.FLOW_PATH, scale=5e-8)
+    pairs = (mapped.x, mapped.angle), (rolled.x, rolled.angle)
+    assert close(*pairs, tol.FLOW_PATH, scale=5e-8)
 
 
 SPIN = 1.4692137743888765  # by bisection on the sign of V at onset
 #: scene, starts, and whether each is in the map; two slide until V and omega vanish nearly
 #: together: their onset lies below every table
 BEYOND = {
-    "elastic": (SCENE.replace(alpha=1.0), *starts(20, 8, SCENE), [False] * 20),
-    "steady speed": (SCENE.replace(mu=0.01), *starts(20, 8, SCENE), [False] * 20),
+    "elastic": (SCENE.replace(alpha=1.0), [1.0], [0.5], [False]),
+    "steady speed": (SCENE.replace(mu=0.01), [1.0], [0.5], [False]),
     "onset": (
         SCENE,
         [1.0, -1.0, -1.0, 0.0],
@@ -184,7 +171,7 @@ BEYOND = {
             [0.5 * speed, speed],
             [False] * 2,
         )
-        for kappa, speed in ((1e250, 1.0), (1e-250, 1.0), (2.91, 1e90), (2.91, 1e-200))
+        for kappa, speed in ((1e250, 1.0), (2.91, 1e90), (2.91, 1e-200))
     },
 }
 
@@ -232,7 +219,7 @@ def test_hardly_any_speed_left_at_onset():
     # about the spin with which nothing is left
     spins = -V0 * np.linspace(0.55, 0.65, 4000)
     found = vr.ensemble(scene, V0, spins, t, method="flow", fields="V")
-    few = np.argsort(np.abs(found.V[:, 0]) / V0)[:400]
+    few = np.argsort(np.abs(found.V[:, 0]) / V0)[:100]
     best = vr.ensemble(scene, V0[few], spins[few], t, method="integrate", rtol=1e-12, fields="V")
     by = found.flow[few]
     assert found.flow.mean() > 0.99

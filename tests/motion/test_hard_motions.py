@@ -49,16 +49,13 @@ def test_as_at_the_tightest_tolerance(row):
     for rtol in row["rtols"]:
         m = vr.roll(*case, rtol=rtol, **drive)
         bound = row["bound"] * (rtol + TIGHT)
-        assert m.status == best.status == vr.MotionStatus.DONE
+        assert {m.status, best.status} == {vr.MotionStatus.DONE}
         assert m.steps <= row["steps"]
         assert [s.regime for s in m.switches] == [s.regime for s in best.switches]
         events, found = ([*(s.t for s in of.switches), *of.reversals] for of in (best, m))
         assert not events or close(found, events, bound, scale=row["t"][-1])
-        for name, size in (
-            ("V", scale),
-            ("omega", scale),
-            ("x", np.maximum.accumulate(np.abs(best.x))),
-        ):
+        sizes = {"V": scale, "omega": scale, "x": np.maximum.accumulate(np.abs(best.x))}
+        for name, size in sizes.items():
             assert close(m[name], best[name], bound, scale=size, what=(name, rtol))
     other = {name: mirrored(name, each) for name, each in drive.items()}
     start = [None if one is None else -one for one in row["start"]]

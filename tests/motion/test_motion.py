@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import PAPER
 
 import viscoroll as vr
 from pipeline.evidence.prove import independent
@@ -19,13 +20,10 @@ pytestmark = pytest.mark.filterwarnings(
 
 ROUNDED = vr.presets.PAPER_SECTION_5_ROUNDED
 #: full slip returns: theory, Sect. 3
-RETURNING = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4, j=0.5)
+RETURNING = ROUNDED.replace(mu=0.01)
 #: mu kappa where the maximum over V of M (1 - j)/(2 (1 + j)) is mu: 0.0411, alpha = 11, j = 1/2
 THRESHOLD = 0.24659784 / 6.0
 
-
-FULL = 0
-REST = 2
 
 # --- the paper's Sect. 5 ---
 
@@ -48,9 +46,9 @@ def test_outputs_end_where_slip_returns():
     there for ever.
     """
     returned = vr.roll(RETURNING, 1.0, 1.0, [2e-3], rtol=1e-12).switches[0].t
-    for shift in (*np.arange(-3.0, 4.0) * 2.0**-52, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8):
+    for shift in (*np.arange(-3.0, 4.0) * 2.0**-52, 1e-14, 1e-12, 1e-10, 1e-8):
         motion = vr.roll(RETURNING, 1.0, 1.0, [returned * (1.0 + shift)], rtol=1e-12)
-        assert motion.status == vr.MotionStatus.DONE
+        assert motion.success
         assert motion.steps < 500
         assert len(motion.switches) <= 1
         edge = vr.contact(RETURNING, motion.V, omega=motion.omega)
@@ -64,7 +62,7 @@ def test_outputs_end_where_V_passes_zero(alpha, method):
     scene = vr.Scene(alpha=alpha, kappa=1.0, mu=1.0, gamma=1.0, j=2.0)
     for shift in (-1e-15, -(2.0**-53), 0.0, 2.0**-52, 1e-15, 1e-12):
         found = vr.ensemble(scene, 1.0, -257.0, 1.0 + shift, method=method, rtol=1e-3)
-        assert found.status[0] == vr.MotionStatus.DONE, shift
+        assert found.success[0], shift
         assert close(found.V[0, -1], -shift, 1e-14, scale=1.0)
         assert close(found.omega[0, -1], -257.0 + 0.5, 1e-12)
 
@@ -73,12 +71,10 @@ def test_threshold_of_the_return_of_slip():
     """alpha = 11, j = 1/2: slip returns, once, where mu kappa < 0.0411 (the next order in V adds
     about 1e-3 to it).
     """
-    for excess, returns in ((1e-2, 0), (2e-3, 0), (0.0, 1), (-1e-4, 1), (-2e-3, 1), (-5e-2, 1)):
-        scene = vr.Scene(
-            alpha=11.0, kappa=2.91, mu=(1.0 + excess) * THRESHOLD / 2.91, gamma=1.1e4, j=0.5
-        )
+    for excess, returns in ((2e-3, 0), (0.0, 1), (-2e-3, 1), (-5e-2, 1)):
+        scene = RETURNING.replace(mu=(1.0 + excess) * THRESHOLD / RETURNING.kappa)
         motion = vr.roll(scene, 2.0, 2.0, 1e-2)
-        assert motion.status == vr.MotionStatus.DONE, excess
+        assert motion.success, excess
         assert motion.steps < 2000, excess
         assert [s.regime for s in motion.switches] == returns * ["full slip", "partial slip"], (
             excess
@@ -86,17 +82,16 @@ def test_threshold_of_the_return_of_slip():
 
 
 def test_rest():
-    threshold = 1e-3
-    motion = vr.roll(ROUNDED, 1.5, 0.5, np.linspace(0.0, 6e-3, 61), rtol=1e-11, rest=threshold)
-    assert motion.status == vr.MotionStatus.RESTED
-    free = vr.roll(ROUNDED, 1.5, 0.5, [motion.rest_time, 1.0], rtol=1e-11)
-    assert close(max(abs(free.V[0]), abs(free.omega[0])), threshold, 1e-9)
-    after = motion.t > motion.rest_time
-    assert not np.any([motion.V[after], motion.omega[after], motion.contact(fields="Q").Q[after]])
-    assert np.all(motion.regime[after] == REST)
-    assert close(motion.x[after], free.x[0], 1e-10)
-    c = (ROUNDED.alpha - 1.0) / ROUNDED.alpha
-    assert close(free.x[1] - free.x[0], (1.0 + ROUNDED.j) * threshold / (ROUNDED.gamma * c), 1e-2)
+    m = vr.roll(ROUNDED, 1.5, 0.5, np.linspace(0.0, 6e-3, 61), rtol=1e-11, rest=1e-3)
+    assert m.status == vr.MotionStatus.RESTED
+    free = vr.roll(ROUNDED, 1.5, 0.5, [m.rest_time, 1.0], rtol=1e-11)
+    assert close(np.abs([free.V, free.omega]).max(), 1e-3, 1e-9)
+    after = m.t > m.rest_time
+    assert not np.any([m.V[after], m.omega[after], m.contact(fields="Q").Q[after]])
+    assert set(m.regime[after]) == {2}
+    assert close(m.x[after], free.x[0], 1e-10)
+    left = (1.0 + ROUNDED.j) * 1e-3 / ROUNDED.gamma  # over 1 - 1/alpha, at low speed
+    assert close(free.x[1] - free.x[0], 1.1 * left, 1e-2)
 
 
 def test_rest_while_sliding_and_from_the_start():
@@ -104,15 +99,11 @@ def test_rest_while_sliding_and_from_the_start():
     assert (slow.rest_time, slow.status, slow.V[0]) == (0.0, vr.MotionStatus.RESTED, 0.0)
     # both speeds fall through the threshold while sliding: V + j omega = 0; V and omega of nearly
     # one size
-    for *start, rest in (
-        (0.5, -1.0, 0.2),
-        (-0.7113467608790995, -1.3359553878111319, 1.0),
-        (0.7058009751523, 1.36067526863356, 1.0),
-    ):
+    for *start, rest in ((0.5, -1.0, 0.2), (0.7058009751523, 1.36067526863356, 1.0)):
         sliding = vr.roll(ROUNDED, *start, [1.0], rest=rest)
         assert math.isnan(sliding.onset_time)
-        there = vr.roll(ROUNDED, *start, [sliding.rest_time], rtol=1e-12)
-        assert close(max(abs(there.V[0]), abs(there.omega[0])), rest, tol.MOTION_RTOL * 1e-8)
+        there = vr.roll(ROUNDED, *start, sliding.rest_time, rtol=1e-12)
+        assert close(np.abs([there.V, there.omega]).max(), rest, tol.MOTION_RTOL * 1e-8)
 
 
 # --- outputs ---
@@ -122,24 +113,20 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
     """In the units that it is asked in, with what to try."""
     words = re.compile(
         r"the step limit was reached first: raise max_steps, shorten the motion or, unless a speed "
-        r"grows without "
-        r"bound, loosen rtol; the last state was "
+        r"grows without bound, loosen rtol; the last state was "
         r"t = (\S+)( s)? in partial slip, V = (\S+)( m s-1)?, omega = (\S+)( rad s-1)?(; |$)"
     )
     with pytest.warns(RuntimeWarning, match="gives the last state"):
         cut = vr.roll(ROUNDED, 1.5, 0.5, [1e-6, 1.0], max_steps=10)
     assert cut.status == vr.MotionStatus.STEP_LIMIT
-    assert np.isfinite(cut.V).tolist() == [True, False]
+    assert np.isfinite([cut.V, cut.contact().Q]).tolist() == [[True, False]] * 2
     assert cut.regime[1] == -1
-    along = cut.contact()
-    assert along.Q[0] == cut.at([1e-6]).contact().Q[0]
-    assert np.isnan(along.Q[1])
-    assert not along.full_slip[1]
+    assert not cut.contact().full_slip[1]
     t, V, omega = (float(value) for value in words.match(cut.message).group(1, 3, 5))
     there = vr.roll(ROUNDED, 1.5, 0.5, [t])
     assert 1e-6 < t < 1.0
     assert close([V, omega], [there.V[0], there.omega[0]], tol.SIX_DIGITS)
-    for steps in range(1, 20):
+    for steps in range(1, 20, 3):
         with pytest.warns(RuntimeWarning, match="gives the last state"):
             cut = vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0, max_steps=steps)
         stood = words.match(cut.message.replace("full slip", "partial slip"))
@@ -150,9 +137,7 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
 @pytest.mark.parametrize("j", [0.3, 0.5, 1.7])
 def test_late_creep_is_what_both_equations_ask(j):
     """V and omega fall together at last: Q (1 + j) = (j - 1) M/2, down to speeds of 1e-119."""
-    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=j)
-    late = vr.ensemble(
-        scene, [1.0], [0.2], [200.0, 400.0], fields=("V", "delta"), method="integrate"
-    )
-    state = vr.contact(scene, late.V[0], delta=late.delta[0])
+    scene = PAPER.replace(j=j)
+    late = vr.roll(scene, 1.0, 0.2, [200.0, 400.0])
+    state = late.contact()
     assert close((1.0 + j) * state.Q, 0.5 * (j - 1.0) * state.M, tol.LATE_CREEP)

@@ -10,23 +10,20 @@ import tolerances as tol
 from maps import decay_time
 
 import viscoroll as vr
-from viscoroll.core.errors import MotionStatus
 from viscoroll.motion.ensemble import FIELDS
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
-METHODS = ("integrate", "flow")
 #: mu kappa at alpha = 11, j = 1/2 where full slip returns: the maximum over V of kappa M over 6
 RETURN = 0.24659784 / 6.0
 SCENES = {
     "paper": SCENE,
     "ring": SCENE.replace(j=1.0),
     "heavy rim": SCENE.replace(j=1.9),
-    "elastic": SCENE.replace(alpha=1.0),
     "elastic ring": SCENE.replace(alpha=1.0, j=1.0),
     "next to elastic": SCENE.replace(alpha=1.0 + 2.3e-16),
     **{
         f"return of slip, {excess:+g}": SCENE.replace(mu=(1.0 + excess) * RETURN / SCENE.kappa)
-        for excess in (-0.5, -1e-3, -1e-9, 0.0, 1e-9, 2e-3)
+        for excess in (-0.5, -1e-9, 0.0, 2e-3)
     },
 }
 #: a motion with several changes of regime takes some hundred
@@ -48,29 +45,31 @@ def nasty(scene):
     """Starts (V0, omega0): axes, V + j omega near 0, the stick boundary and delta = 0, subnormal
     numbers.
     """
-    star = vr.contact(scene, [1.0, 1e-3], delta=0.0, fields="delta_star").delta_star
+    speeds = 1.0, 1e-3, 1e-200
+    star = vr.contact(scene, speeds, delta=0.0).delta_star
     opposite = -0.5 / scene.j
     return np.array(
         [
-            *[
-                (0.0, 0.0),
-                (0.0, 1.0),
-                (1.0, 0.0),
-                (5e-324, 1.0),
-                (-5e-324, 1.0),
-                (1.0, 5e-324),
-                (1e-300, 0.0),
-            ],
+            (0.0, 0.0),
+            (0.0, 1.0),
+            (1.0, 0.0),
+            (5e-324, 1.0),
+            (-5e-324, 1.0),
+            (1.0, 5e-324),
+            (1e-300, 0.0),
             *[(0.5, ulps(opposite, n)) for n in (-2, -1, 0, 1, 2)],
-            *[(V, ulps(V * (1.0 + d), n)) for V, d in zip((1.0, 1e-3), star) for n in (-1, 0, 1)],
-            *[(V, ulps(V * (1.0 - d), n)) for V, d in zip((1.0, 1e-3), star) for n in (-1, 0, 1)],
-            *[(V, ulps(V, n)) for V in (1.0, 1e-3, 1e-200) for n in (-1, 0, 1)],
+            *[
+                (V, ulps(V * at, n))
+                for V, d in zip(speeds, star)
+                for at in (1.0 - d, 1.0, 1.0 + d)
+                for n in (-1, 0, 1)
+            ],
         ]
     )
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", list(SCENES))
+@pytest.mark.parametrize("method", ["integrate", "flow"])
+@pytest.mark.parametrize("name", SCENES)
 def test_finite_in_bounded_steps(name, method):
     """Any end time from 1e-12 to 1e12 decay times; the mirrored starts give the mirrored motions,
     bit for bit.
@@ -80,18 +79,18 @@ def test_finite_in_bounded_steps(name, method):
     t = decay_time(scene) * np.array([1e-12, 1e-6, 1e-2, 1.0, 10.0, 100.0, 1e3, 1e6, 1e12])
     options = {"method": method, "fields": FIELDS, "rtol": 1e-6, "max_steps": STEPS}
     here, there = (vr.ensemble(scene, *(sign * start).T, t, **options) for sign in (1.0, -1.0))
-    assert (here.status == MotionStatus.DONE).all(), start[here.status != MotionStatus.DONE]
+    assert here.success.all(), start[~here.success]
     assert not np.isnan(here.delta).any()
     for field in ("V", "omega", "x", "angle"):
-        values = getattr(here, field)
-        assert np.isfinite(values).all(), (field, start[~np.isfinite(values).all(axis=1)])
-        assert np.array_equal(values, -getattr(there, field)), field
+        finite = np.isfinite(here[field]).all(axis=1)
+        assert finite.all(), (field, start[~finite])
+        assert np.array_equal(here[field], -there[field]), field
     # resistance may feed a cylinder that spins against its way
     rolling = np.minimum.accumulate(here.V * here.omega, axis=1) >= 0.0
-    rolling &= (start[:, 0] * start[:, 1] >= 0.0)[:, None]
+    rolling &= start.prod(axis=1, keepdims=True) >= 0.0
     energy = here.V**2 + scene.j * here.omega**2
-    first = (start**2) @ [1.0, scene.j]
-    assert (energy <= (1.0 + tol.MOTION_DEFAULT) * first[:, None])[rolling].all()
+    first = start**2 @ [[1.0], [scene.j]]
+    assert (energy <= (1.0 + tol.MOTION_DEFAULT) * first)[rolling].all()
     if scene.alpha > 1.5:
         assert (np.abs(here.V[:, -1]) < tol.PROVEN_SUBNORMAL).all()
         np.testing.assert_array_equal(here.x[:, -1], here.x[:, -2])
@@ -104,5 +103,5 @@ def test_speeds_that_vanish_together(rtol):
     other digits moved the onset."""
     omega = 1.4692137743888392 * (1.0 + np.arange(-80, 81) * np.finfo(float).eps)
     ended = vr.ensemble(SCENE, -1.0, omega, [1e-3, 3e-3], rtol=rtol, method="integrate")
-    assert (ended.status == MotionStatus.DONE).all()
+    assert ended.success.all()
     assert (np.abs(ended.V) <= tol.VANISHED * rtol).all()

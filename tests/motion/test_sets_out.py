@@ -9,6 +9,7 @@ from closeness import close
 from drives import ROLLER
 
 import viscoroll as vr
+from viscoroll.presets import PAPER_SECTION_5_ROUNDED as PAPER
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
@@ -21,7 +22,7 @@ def fastest(m):
     return float(max(np.abs(m.V).max(), np.abs(m.omega).max()))
 
 
-@pytest.mark.parametrize("faint", [1e-12, 1e-15, 1e-18, 1e-40, 1e-70])
+@pytest.mark.parametrize("faint", [1e-12, 1e-18, 1e-70])
 def test_a_faint_drive_moves_as_much_less(faint):
     """At low speed the motion is linear in what drives it: by a push, a ramp, and a ramp that
     begins later.
@@ -29,17 +30,8 @@ def test_a_faint_drive_moves_as_much_less(faint):
     for times, values in (([0.0], [1.0]), ([0.0, 2.0], [0.0, 1.0]), ([0.7, 2.0], [0.0, 1.0])):
         drives = (vr.Schedule(times, np.multiply(values, size)) for size in (faint, 1e-9))
         m, plain = (vr.roll(ROLLER, 0.0, 0.0, T, torque=torque) for torque in drives)
-        assert m.status == vr.MotionStatus.DONE
+        assert m.success
         assert close(m.V / faint, plain.V / 1e-9, tol.FAINT)
-
-
-@pytest.mark.parametrize("faint", [1e-18, 1e-70, 1e-100, 1e-300])
-def test_what_follows_a_faint_beginning(faint):
-    """A ramp up from next to nothing is one up from 0."""
-    plain = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 0.5, 2.0], [0.0, 0.0, 0.1]))
-    m = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 0.5, 2.0], [0.0, faint, 0.1]))
-    assert m.steps < 100
-    assert close(m.V, plain.V, 30e-8, scale=fastest(plain))
 
 
 @pytest.mark.parametrize("creep", [0.0, 1.0, -1.0])
@@ -57,47 +49,33 @@ def test_a_start_of_next_to_nothing(drive, creep):
     """Under a push, a push to come, a ramp, wheel spin: as from rest.  It ended in steps that were
     too small.
     """
-    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4)
     t = np.array([1e-3, 2e-3, 1e-2])
-    plain = vr.roll(scene, 0.0, 0.0, t, **drive)
-    for V0 in (1e-80, 1e-90, 1e-95, 1e-100, 1e-300):
-        m = vr.roll(scene, V0, creep * V0, t, **drive)
-        assert m.status == vr.MotionStatus.DONE
+    plain = vr.roll(PAPER, 0.0, 0.0, t, **drive)
+    for V0 in (1e-80, 1e-95, 1e-300):
+        m = vr.roll(PAPER, V0, creep * V0, t, **drive)
+        assert m.success
         assert close(m.V, plain.V, 30e-8, scale=max(fastest(plain), V0))
 
 
-@pytest.mark.filterwarnings("ignore:roll")
 def test_to_and_fro_where_friction_is_strong():
     """Jumps of force and torque take V to 0 while d relaxes from nowhere: a tenth ended in steps
     too small.
     """
     scene = vr.Scene(alpha=11.0, kappa=0.1, mu=0.9, gamma=1.0, j=0.8)
     draw = np.random.default_rng(5)
-    n = 60
-    jumps = 20
-    times = np.repeat(np.arange(jumps + 1.0), 2)[1:-1]
-    t = np.linspace(0.0, jumps, 61)
-    sign = (-1.0) ** np.arange(jumps)
-    force, torque = (
-        vr.Schedule(
-            times, np.repeat(draw.uniform(0.1, 1.3, (n, jumps)) * sign * scene.mu, 2, axis=1)
-        )
-        for _ in range(2)
-    )
+    times = np.repeat(np.arange(21.0), 2)[1:-1]
+    t = np.linspace(0.0, 20.0, 61)
+    sizes = scene.mu * draw.uniform(0.1, 1.3, (2, 30, 20)) * (-1.0) ** np.arange(20)
+    force, torque = (vr.Schedule(times, each) for each in np.repeat(sizes, 2, axis=2))
     found, best = (
-        vr.ensemble(
-            scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque, fields=("V", "omega")
-        )
+        vr.ensemble(scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque)
         for rtol in (1e-6, 1e-10)
     )
-    # where the law leaves two ways on it is said so
-    ends = {vr.MotionStatus.DONE, vr.MotionStatus.UNDECIDED}
-    assert ends >= set(found.status) == set(best.status)
-    assert (best.status == vr.MotionStatus.DONE).mean() > 0.9
-    done = (found.status == vr.MotionStatus.DONE) & (best.status == vr.MotionStatus.DONE)
-    so_far = np.maximum.accumulate(np.maximum(np.abs(best.V), np.abs(best.omega)), axis=1)[done]
-    assert close(found.V[done], best.V[done], 30e-6, scale=so_far)
-    assert close(found.omega[done], best.omega[done], 30e-6, scale=so_far)
+    assert found.success.all()
+    assert best.success.all()
+    speeds, exact = (np.stack([e.V, e.omega]) for e in (found, best))
+    so_far = np.maximum.accumulate(np.abs(exact).max(axis=0), axis=1)
+    assert close(speeds, exact, 30e-6, scale=so_far)
 
 
 #: mu/(2 kappa), force and slope of omega/gamma over mu: rolls off either way, or one way and slides
@@ -119,4 +97,4 @@ def test_two_ways_on_are_none(name):
     assert m.V[0] == 0.0
     assert np.isnan(m.V[1])
     weaker = vr.roll(vr.Scene(11.0, 0.5, 1.0, 1.0, 0.5), 0.0, None, [0.0, 1.0], **drive)
-    assert weaker.status == vr.MotionStatus.DONE
+    assert weaker.success

@@ -12,29 +12,25 @@ pytestmark = pytest.mark.filterwarnings(
 )  # the paper's own scene is beyond the model
 
 PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
-#: rolling resistance widens the slip where it is at its largest, before friction closes it
-WIDENING = PAPER.replace(mu=0.01)
 
 
 def test_elastic_cylinder():
     """alpha = 1: V' = +-gamma mu, omega' = -+gamma mu/j until |omega - V| = mu/(2 kappa) |V|."""
     scene = PAPER.replace(alpha=1.0)
-    for V0, omega0 in ((1.5, 0.5), (0.5, 1.5), (0.0, 1.0), (1.0, -3.0), (1.0, -1.5), (-2.0, 1.0)):
+    for V0, omega0 in ((0.5, 1.5), (0.0, 1.0), (1.0, -3.0), (-2.0, 1.0)):
         push = scene.gamma * scene.mu * np.sign(omega0 - V0)
         end = abs(omega0 - V0) / (scene.gamma * scene.mu * (1.0 + 1.0 / scene.j))
         t = end * np.array([1e-9, 1e-4, 0.1, 0.5, 0.9])
-        motion = vr.roll(scene, V0, omega0, [*t, 2.0 * end], rtol=1e-8)
-        for speed, way, start, rate in (
-            ("V", "x", V0, push),
-            ("omega", "angle", omega0, -push / scene.j),
-        ):
-            assert close(motion[speed][:5], start + rate * t, tol.SLIDE, scale=1.0)
-            assert close(motion[way][:5], start * t + 0.5 * rate * t**2, tol.SLIDE, scale=end)
+        m = vr.roll(scene, V0, omega0, t, rtol=1e-8)
+        start = np.array([[V0], [omega0]])
+        rate = push * np.array([[1.0], [-1.0 / scene.j]])
+        assert close((m.V, m.omega), start + rate * t, tol.SLIDE, scale=1.0)
+        assert close((m.x, m.angle), start * t + 0.5 * rate * t**2, tol.SLIDE, scale=end)
         # in the end it rolls at the speed that conserves V + j omega, for ever
         final = (V0 + scene.j * omega0) / (1.0 + scene.j)
         rolls = vr.roll(scene, V0, omega0, [1.0, 1e3], rtol=1e-8)
-        assert close((rolls.V, rolls.omega), np.full((2, 2), final), 1e-7, scale=1.0)
-        assert close(np.diff(rolls.x), 999.0 * final, 1e-7, scale=1.0)
+        found = [*rolls.V, *rolls.omega, np.diff(rolls.x)[0] / 999.0]
+        assert close(found, final, 1e-7, scale=1.0)
 
 
 def test_the_first_instants():
@@ -45,11 +41,11 @@ def test_the_first_instants():
     rises = vr.roll(PAPER, 0.0, 1.0, [*t, 1e-4])
     assert close(rises.x[:3], 0.5 * PAPER.gamma * PAPER.mu * t**2, 1e-6)
     turns = vr.roll(PAPER, 1.0, 0.0, [*t, 1e-4])
-    M = vr.contact(PAPER, 1.0, omega=0.0, fields="M").M
+    M = PAPER.contact(1.0, omega=0.0).M
     assert close(turns.angle[:3], 0.5 * PAPER.gamma / PAPER.j * (PAPER.mu - 0.5 * M) * t**2, 1e-6)
 
 
-@pytest.mark.parametrize("spin", [1e1, 1e3, 1e6, 1e9])
+@pytest.mark.parametrize("spin", [1e1, 1e9])
 def test_a_held_cylinder_takes_no_steps(spin):
     """M(V) = 2 mu: V stands still however long, then slip ends; the spin falls linearly."""
     scene = PAPER.replace(mu=0.005)
@@ -59,35 +55,3 @@ def test_a_held_cylinder_takes_no_steps(spin):
     M = vr.contact(scene, motion.V[0], omega=motion.omega[0], fields="M").M
     assert close(M, 2.0 * scene.mu, 1e-6 if spin < 1e2 else 1e-9)
     assert close(motion.omega[0], 0.5 * spin, 1e-1)
-
-
-def test_a_slip_that_nearly_ends_is_noticed():
-    """Friction closes the slip, resistance widens it again: onset jumps where slip just touches its
-    limit.
-    """
-
-    def early(omega0, rtol):
-        return vr.roll(WIDENING, 2.0, omega0, [1e-2], rtol=rtol).onset_time < 5e-3
-
-    low = 2.0 - 0.55
-    high = 2.0 - 0.525
-    for _ in range(16):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if early(middle, 1e-9) else (middle, high)
-    for rtol in (1e-3, 1e-4, 1e-5):
-        near = high + 2.0 * rtol
-        assert early(near, rtol)
-        assert not early(low - 2.0 * rtol, rtol)
-
-
-def test_largest_rolling_resistance():
-    """kappa M grows with alpha at every speed, to 0.30905 at most: with more friction nothing holds
-    V.
-    """
-    V = np.geomspace(1e-4, 1e6, 4001)
-    alphas = np.geomspace(1.0001, 1e12, 60)
-    M = np.array(
-        [vr.contact(vr.Scene(alpha, 1.0, 1.0), V, delta=0.0, fields="M").M for alpha in alphas]
-    )
-    assert np.diff(M, axis=0).min() > -tol.CONTACT * M.max()
-    assert 0.3090 < M.max() < 0.3091

@@ -2,6 +2,8 @@
 shape.
 """
 
+import math
+
 import flint
 import mpmath as mp
 import numpy as np
@@ -23,9 +25,8 @@ def random_series(seed):
 
 
 def N(material, kappa_V):
-    return vr.contact(
-        vr.Scene(material=material, kappa=10.0, mu=0.3), 0.1 * kappa_V, delta=0.0, fields="N"
-    ).N
+    scene = vr.Scene(material=material, kappa=1.0, mu=0.3)
+    return scene.contact(kappa_V, delta=0.0, fields="N").N
 
 
 def exact(known, z):
@@ -62,42 +63,33 @@ def test_rows_against_its_definition(material):
     """Over its largest size: N has a zero."""
     with mp.workdps(50), flint.ctx.workprec(1000):
         known = material_of(material)
-        slow = float(1 / known.b[0])
-        fast = float(1 / known.a[-1])
-        found = []
-        truth = []
-        for z in 10.0 ** np.random.default_rng(4).uniform(
-            np.log10(fast) - 2.0, np.log10(slow) + 3.0, 4
-        ):
-            u = 1 / (2 * (z * (z + 2 * zone_of(known, flint.arb(z)).h)).sqrt())
-            one = {"alpha" if isinstance(material, float) else "material": material}
-            found.append(
-                vr.contact(vr.Scene(kappa=1.0, mu=0.1, **one), float(u), delta=0.0, fields="N").N
-            )
-            if "alpha" in one:  # among others it is read from another place
-                many = vr.contact(
-                    vr.Scene([material, 1.0], kappa=1.0, mu=0.1), float(u), delta=0.0, fields="N"
-                ).N
-                assert close(many, [found[-1], 0.0], tol.AXIS_UNSTEADY, scale=LARGEST)
-            truth.append(float(exact(known, mp.mpf(z))))
-        S_J = sum(J / b**2 for J, b in zip(known.J, known.b, strict=True))
-    assert close(found, truth, tol.AXIS_UNSTEADY, scale=LARGEST * float(S_J))
+        low, high = (math.log10(1 / float(rate)) for rate in (known.a[-1], known.b[0]))
+        z = (10.0 ** np.random.default_rng(4).uniform(low - 2.0, high + 3.0, 4)).tolist()
+        h = [zone_of(known, flint.arb(each)).h for each in z]
+        truth = [float(exact(known, mp.mpf(each))) for each in z]
+        S_J = float(sum(J / b**2 for J, b in zip(known.J, known.b, strict=True)))
+    u = [0.5 / math.sqrt(each * (each + 2.0 * float(own))) for each, own in zip(z, h)]
+    kind = "alpha" if isinstance(material, float) else "material"
+    scene = vr.Scene(kappa=1.0, mu=0.1, **{kind: material})
+    found = scene.contact(u, delta=0.0, fields="N").N
+    assert close(found, truth, tol.AXIS_UNSTEADY, scale=LARGEST * S_J)
+    if kind == "alpha":  # among others it is read from another place
+        many = scene.replace(alpha=[[material], [1.0]]).contact(u, delta=0.0, fields="N").N
+        assert close(many, [found, 0.0 * found], tol.AXIS_UNSTEADY, scale=LARGEST)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_limits(seed):
-    """Slow: -S_E + kappa V (w_3 - 2 w_1 w_2), w_n = (n - 1)! (sum T^n - sum tau^n); fast: sum J/(4
-    kappa V)^2.
+    """Slow: -S_E + 2 kappa V (w_3 - w_1 w_2), w_n = sum T^n - sum tau^n; fast: sum J/(4 kappa
+    V)^2.
     """
     p = random_series(seed)
-    w = [
-        factor * ((p.T**n).sum() - (p.tau**n).sum()) for n, factor in ((1, 1.0), (2, 1.0), (3, 2.0))
-    ]
+    w = [(p.T**n).sum() - (p.tau**n).sum() for n in (1, 2, 3)]
     S_E = (p.E * p.tau**2).sum()
     slow = 1e-4 / p.T[0]
     assert close(N(p, 0.0), -S_E, tol.UNSTEADY_SERIES)
     rise = (N(p, slow) - N(p, 0.0)) / slow
-    assert close(rise, w[2] - 2.0 * w[0] * w[1], tol.UNSTEADY_SLOW)
+    assert close(rise, 2.0 * (w[2] - w[0] * w[1]), tol.UNSTEADY_SLOW)
     for fast in (1e4 / p.tau[-1], 1e9 / p.tau[-1], 1e40):
         assert close(N(p, fast), p.J.sum() / (4.0 * fast) ** 2, tol.UNSTEADY_FAST)
 
