@@ -35,30 +35,23 @@ def noise(seed, values, sigma):
     )
 
 
-def resistance(V=HUMP, seed=None, sigma=0.01, **more):
-    body = roller() if "load" not in more else roller().replace(load=more["load"])
-    return vr.Resistance(
-        V, noise(seed, body.contact(V, delta=0.0, fields="M").M, sigma), sigma=sigma, **more
-    )
+def resistance(V=HUMP, seed=None):
+    """M over speed."""
+    M = roller().contact(V, delta=0.0, fields="M").M
+    return vr.Resistance(V, noise(seed, M, 0.01), sigma=0.01)
 
 
-def traction(speeds=(0.1,), seed=None, sigma=1.0, **more):
-    delta = np.tile(np.linspace(-0.06, 0.06, 21), len(speeds))
-    V = np.repeat(speeds, 21)
-    return vr.Traction(
-        V,
-        delta,
-        noise(seed, roller().contact(V, delta=delta, fields="Q").Q, sigma),
-        sigma=sigma,
-        **more,
-    )
+def traction(seed=None):
+    """Q over creep at 0.1 m/s."""
+    delta = np.linspace(-0.06, 0.06, 21)
+    Q = roller().contact(0.1, delta=delta, fields="Q").Q
+    return vr.Traction(0.1, delta, noise(seed, Q, 1.0), sigma=1.0)
 
 
-def thrown(seed=None, t=TIMES, omega0=0.0, **more):
-    """V of a roller thrown at 4 m/s without spin, or let go rolling."""
-    motion = roller().roll(4.0, 40.0 if omega0 is None else omega0, t, rtol=1e-10, **more)
-    spin = {} if omega0 is None else {"omega0": omega0}
-    return vr.Coastdown(t, noise(seed, motion.V, 5e-3), sigma=5e-3, name="throw", **spin)
+def thrown(seed=None, t=TIMES):
+    """V of a roller thrown at 4 m/s without spin."""
+    V = roller().roll(4.0, 0.0, t, rtol=1e-10).V
+    return vr.Coastdown(t, noise(seed, V, 5e-3), sigma=5e-3, name="throw", omega0=0.0)
 
 
 #: of the drum's resistance, in files

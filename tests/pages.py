@@ -18,5 +18,5 @@ def run_page(name):
 
 
 #: pages of the how-to that take longer than a test may; tests/evidence runs them
-LONG = {"covers", "law", "wheels"}
+LONG = {"covers", "heat", "law", "nips", "wheels"}
 HOWTO = {path.stem for path in (ROOT / "docs/howto").glob("*.md")}

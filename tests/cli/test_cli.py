@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import warnings
@@ -12,9 +13,7 @@ import pandas as pd
 import pytest
 import tolerances as tol
 import xarray as xr
-from closeness import close
-from places import ROOT
-from processes import printed, python
+from processes import printed
 
 import viscoroll as vr
 from viscoroll.cli import arguments, main
@@ -26,9 +25,6 @@ pytestmark = pytest.mark.filterwarnings(
 )  # the paper's own scene is beyond the model
 
 PRESET = ["paper-section-5"]
-START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
-GRID = "tables build --V 0.1:1:5:log --delta -0.04:0.04:9"
-SCENE = "[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n"
 COMMANDS = [
     name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu", "tables grid")
 ]  # these take long
@@ -38,7 +34,6 @@ scene.mu = { distribution = "uniform", loc = 0.19, scale = 0.02 }
 start = { V0 = 1.0, omega0 = 0.0 }
 run = { n = 1, t = 1.2e-4, summaries = ["V"] }
 """
-PROGRAM = [sys.executable, "-m", "viscoroll"]
 
 
 @pytest.fixture(autouse=True)
@@ -84,24 +79,24 @@ def refuse(capsys, here):
 
 
 @pytest.fixture(scope="module")
-def tables(tmp_path_factory):
-    """Folder with the law of a rubber and a small grid."""
-    folder = tmp_path_factory.mktemp("tables")
-    vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), folder / "rubber.nc")
-    vr.tables.save(
-        vr.tables.build(
-            vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01], alpha=[1.0, 11.0]
-        ),
-        folder / "grid.nc",
-    )
-    return folder
+def law(tmp_path_factory):
+    """A file of the law of a rubber."""
+    path = tmp_path_factory.mktemp("tables") / "rubber.nc"
+    vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), path)
+    return path
 
 
 # --- the program itself ---
 
 
+def told_by_shell(line):
+    """What the program gives on such a line of a shell."""
+    command = ["bash", "-c", f"{shlex.quote(sys.executable)} -m viscoroll {line}"]
+    return subprocess.run(command, check=False, capture_output=True, text=True)
+
+
 def test_version_and_module():
-    done = python("-m", "viscoroll", "--version")
+    done = told_by_shell("--version")
     assert (done.returncode, done.stdout, done.stderr) == (0, f"viscoroll {vr.__version__}\n", "")
 
 
@@ -125,16 +120,14 @@ def test_help_imports_nothing_heavy():
     ],
 )
 def test_standard_output_that_takes_nothing(redirected, code, error):
-    show = [*PROGRAM, "material", "show", str(vr.datasets.path("rubber.toml"))]
-    command = ["bash", "-c", f"{shlex.join(show)} {redirected}"]
-    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    shown = shlex.quote(str(vr.datasets.path("rubber.toml")))
+    done = told_by_shell(f"material show {shown} {redirected}")
     assert (done.returncode, done.stderr) == (code, error)
 
 
 @pytest.mark.parametrize("redirected", ["2>&-", "2>/dev/full", ">&- 2>&-"])
 def test_an_error_that_nobody_hears_is_one(redirected):
-    command = ["bash", "-c", f"{shlex.join(PROGRAM)} contact {redirected}"]
-    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    done = told_by_shell(f"contact {redirected}")
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "")
 
 
@@ -178,48 +171,43 @@ prony = { E = [0.5, 1.0], tau = [1.0, 0.01] }
 T_ref = 2.0
 wlf = { T0 = 20.0 }
 """
+DATA = str(vr.datasets.path("dma.csv"))
 ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
 
 
 def test_material_fit(run, here):
     """What was read, the report, and a file that holds the fit to the bit."""
-    data = str(ROOT / "src/viscoroll/datasets/dma.csv")
-    report = run("material", "fit", data, "--nu", "0.5", "--name", "a rubber", "-o", "a.toml")
-    record = vr.read_dma(data)
+    report = run("material", "fit", DATA, "--nu", "0.5", "--name", "a rubber", "-o", "a.toml")
+    record = vr.read_dma(DATA)
     fit = vr.fit_prony(*record, source="dma.csv")
     assert report == f"{record}\n{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
     assert "Prony series of 4 modes" in run(
-        "material", "fit", data, "--modes", "4", "--misfit", "0.05"
+        "material", "fit", DATA, "--modes", "4", "--misfit", "0.05"
     )
     assert f"measured          {fit.measured}" in run("material", "show", "a.toml")
 
 
-def test_a_fit_that_misses_writes_no_file(here, capsys):
+@pytest.mark.parametrize(
+    ("misfit", "words", "name"),
+    [("1e-4", "0.01% was not reached", "poor.toml"), ("0.9", "is above 5%", "poor.nc")],
+)
+def test_a_fit_that_misses_writes_no_file(here, capsys, misfit, words, name):
     """Exit code 1, whether the misfit was asked for in vain or is above 5 %; with --force a file
     that says so.
     """
-    data = str(ROOT / "src/viscoroll/datasets/dma.csv")
-    for more, words in (
-        (["--misfit", "1e-4"], "0.01% was not reached"),
-        (["--misfit", "0.9"], "is above 5%"),
-    ):
-        fit = ["material", "fit", data, *more, "--modes", "1", "-o"]
-        for name in ("poor.toml", "poor.nc"):
-            assert main([*fit, name]) == 1
-            told = capsys.readouterr().err
-            assert words in told
-            assert f"{name} is not written" in told
-            assert "raise --misfit" not in told
-            assert not (here / name).exists()
-            with warnings.catch_warnings():
-                warnings.simplefilter("default")
-                assert main([*fit, name, "--force"]) == 0
-            assert capsys.readouterr().err.count(words) == 1
-            assert (
-                "forced: the misfit of" in read_materials(here / name)["material"].measured.source
-            )
-            (here / name).unlink()
+    fit = ["material", "fit", DATA, "--misfit", misfit, "--modes", "1", "-o", name]
+    assert main(fit) == 1
+    told = capsys.readouterr().err
+    assert words in told
+    assert f"{name} is not written" in told
+    assert "raise --misfit" not in told
+    assert not (here / name).exists()
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        assert main([*fit, "--force"]) == 0
+    assert capsys.readouterr().err.count(words) == 1
+    assert "forced: the misfit of" in read_materials(here / name)["material"].measured.source
 
 
 def test_a_cylinder_of_a_file_is_in_si(run, here):
@@ -242,7 +230,7 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
 def test_a_warning_is_one_line(capsys):
     with warnings.catch_warnings():
         warnings.simplefilter("default")
-        assert main(["roll", *START, "--t", "1e-6"]) == 0
+        assert main(["roll", *PRESET, "--V0", "1.5", "--omega0", "0.5", "--t", "1e-6"]) == 0
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(
         "viscoroll: warning: the model does not hold for this motion: it is too slow "
@@ -250,7 +238,6 @@ def test_a_warning_is_one_line(capsys):
 
 
 PAPER = vr.presets.PAPER_SECTION_5
-T = np.linspace(0.0, 3e-3, 7)
 V = np.array([-1.0, 0.0, 1.0, 2.0])[:, None]
 OMEGA = np.geomspace(1e-3, 1.0, 4)
 SAME = {
@@ -270,23 +257,12 @@ def test_csv_and_netcdf_hold_the_bits_of_the_call(run, argv):
         expected = SAME[argv](data).to_xarray()
         axes = [*expected.sizes]
         table = xr.Dataset.from_dataframe(pd.read_csv("a.csv").set_index(axes))
-        for name in (
-            name for name, each in expected.variables.items() if each.ndim and name != "regime"
-        ):
-            for found in (data, table):
-                assert np.array_equal(found[name].values, expected[name].values, equal_nan=True), (
-                    name
-                )
-        if command == "stress":
-            assert close(data["p"][[0, -1]], 0.0, tol.CLI_EDGE, scale=data["p"].values.max())
-            assert (data["p"][1:-1] > 0.0).all()
-
-
-# --- roll ---
+        for name, each in expected.drop_vars("regime", errors="ignore").variables.items():
+            for found in (data, table) if each.ndim else ():
+                assert np.array_equal(found[name].values, each.values, equal_nan=True), name
 
 
 # --- tables ---
-
 
 ONE = "[material]\nE = 3e6\nnu = 0.5\nprony = { E = [0.3, 0.6], tau = [2e-2, 1e-3] }\n"
 
@@ -304,14 +280,14 @@ def test_tables_law(run, here):
     assert vr.load_law("law.nc", alpha=11.0).material == 11.0
 
 
-def test_tables_validate(run, capsys, tables):
-    assert "EXCEEDED" not in run("tables", "validate", str(tables / "rubber.nc"), "-n", "500")
-    wrong = vr.tables.load(tables / "rubber.nc")
+def test_tables_validate(run, capsys, law):
+    assert "EXCEEDED" not in run("tables", "validate", str(law), "-n", "99")
+    wrong = vr.tables.load(law)
     wrong["press"].values[9] *= 1.0 + tol.CLI_WRONG
     vr.tables.save(
         wrong.assign_attrs(sha256_of_numbers=checksum(dataset_content(wrong).numbers)), "wrong.nc"
     )
-    assert main(["tables", "validate", "wrong.nc", "-n", "500"]) == 1
+    assert main(["tables", "validate", "wrong.nc", "-n", "99"]) == 1
     out, err = capsys.readouterr()
     assert err == ""
     assert [": press" in line for line in out.splitlines() if "EXCEEDED" in line] == [True]
@@ -367,24 +343,20 @@ SHOWN = {
 
 
 @pytest.fixture
-def files(run, here, tables):
+def files(run, here, law):
     """What the commands above name."""
     for name in ("folder.csv", "folder.zarr"):
         (here / name).mkdir()
     (here / "run.toml").write_text(UNCERTAIN)
-    whole = (tables / "rubber.nc").read_bytes()
-    (here / "half.nc").write_bytes(whole[: len(whole) // 2])
-    (here / "law.nc").write_bytes(whole)
-    (here / "rubber.nc").write_bytes(whole)
-    (here / "dma.csv").write_bytes((ROOT / "src/viscoroll/datasets/dma.csv").read_bytes())
+    shutil.copy(law, here)
+    shutil.copy(law, here / "law.nc")
+    (here / "half.nc").write_bytes(law.read_bytes()[:1000])
+    shutil.copy(DATA, here)
     for name, text in (
         ("file", "as it was"),
-        ("s.toml", SCENE),
-        ("bad.toml", "[scene]\nalhpa = 11\n"),
         ("rubber.toml", ONE),
         ("tread.toml", RUBBER),
         ("warm.toml", RUBBER + "temperature = 30.0\n"),
-        ("pair.toml", RUBBER + "[base]\nE = 2e11\nnu = 0.3\n"),
     ):
         (here / name).write_text(text)
 

@@ -93,19 +93,24 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
     refused_file(lambda: open_run(store), "V_mean/0")
 
 
+#: a file of each kind of a store; each third is of values, of records, of metadata
+PARTS = [
+    "motions/V/7.0",
+    "records/000000007",
+    "records/start",
+    "records/end",
+    "V_mean/0",
+    ".zmetadata",
+    "motions/V/.zarray",
+]
+
+
 @pytest.mark.parametrize("change", ["flip", "truncate", "remove"])
 def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
     """At its own time, to each kind of file: values and records of a block, summaries, metadata."""
     store = copied(whole, tmp_path / "store.zarr")
-    for name in (
-        "motions/V/7.0",
-        "records/000000007",
-        "records/start",
-        "records/end",
-        "V_mean/0",
-        ".zmetadata",
-        "motions/V/.zarray",
-    ):
+    exact = content(whole)
+    for name in PARTS if change == "flip" else PARTS[::3]:
         data = bytearray((store / name).read_bytes())
         data[len(data) // 2] ^= 16
         if change == "remove":
@@ -118,7 +123,7 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
             assert not verify(store).ok, name
         made = run_ensemble(read_run(run_file), store)
         assert made == (1 if "7" in name else 0), name
-        assert content(store) == content(whole), name
+        assert content(store) == exact, name
 
 
 @contextmanager
@@ -143,7 +148,7 @@ def disk_for(writes, monkeypatch):
 def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
     """At any of the writes: one line, and the same command goes on."""
     store = tmp_path / "store.zarr"
-    for writes in (1, 30, 170, 300):
+    for writes in (1, 60, 300):
         with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), store, threads=2)
     run_ensemble(read_run(run_file), store)
@@ -196,7 +201,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
     """Until then it is the smaller store or one that is not finished, never one of fewer motions
     than it says.
     """
-    for writes in (0, 3, 20, 40, 100):
+    for writes in (0, 20, 100):
         with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), smaller, threads=1)
         assert not verify(smaller).ok
@@ -237,31 +242,24 @@ def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, word
     assert content(store) == was
 
 
+def begun(run_file, store, **options):
+    """The program in a process of its own, at work on a run."""
+    command = [sys.executable, "-m", "viscoroll", "ensemble", run_file, "-o", store]
+    return subprocess.Popen(
+        [*command, "--threads", "2"], stdout=subprocess.DEVNULL, text=True, **options
+    )
+
+
 def test_a_killed_run_goes_on(run_file, tmp_path, whole):
     """SIGKILL of everything: what is done stays as it is, and at most one block a worker is made
     again.
     """
     store = tmp_path / "store.zarr"
-    kills = 0
-    command = [
-        sys.executable,
-        "-m",
-        "viscoroll",
-        "ensemble",
-        run_file,
-        "-o",
-        store,
-        "--threads",
-        "2",
-    ]
-    while kills < 1:
-        before = len(list(store.glob("records/0*")))
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
-        while process.poll() is None and len(list(store.glob("records/0*"))) < before + 3:
-            time.sleep(0.001)
-        os.killpg(process.pid, signal.SIGKILL)
-        kills += process.wait() == -signal.SIGKILL
-        assert process.returncode == -signal.SIGKILL
+    process = begun(run_file, store, start_new_session=True)
+    while process.poll() is None and len(list(store.glob("records/0*"))) < 3:
+        time.sleep(0.001)
+    os.killpg(process.pid, signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL
     done = {path: path.stat().st_mtime_ns for path in store.glob("records/0*")}
     assert 3 <= len(done) < 12
     assert run_ensemble(read_run(run_file), store) == 12 - len(done)
@@ -274,31 +272,16 @@ def _heeding():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def test_an_interrupt_answers_at_once(tmp_path, whole):
+def test_an_interrupt_answers_at_once(tmp_path):
     """Ctrl-C in the midst of long blocks: within seconds on a busy machine, what is kept and how to
     go on.
     """
     long = RUN.replace("n = 1200", "n = 400_000").replace("block = 100", "block = 100_000")
     long = long.replace('"all"', '"summaries"')
     (tmp_path / "long.toml").write_text(long)
-    command = [
-        sys.executable,
-        "-m",
-        "viscoroll",
-        "ensemble",
-        "long.toml",
-        "-o",
-        "long.zarr",
-        "--threads",
-        "2",
-    ]
-    process = subprocess.Popen(
-        command,
-        cwd=tmp_path,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        preexec_fn=_heeding,  # noqa: PLW1509 (nothing else runs in this process)
+    # nothing else runs in this process
+    process = begun(
+        "long.toml", "long.zarr", cwd=tmp_path, stderr=subprocess.PIPE, preexec_fn=_heeding
     )
     while not (tmp_path / "long.zarr/records/start").exists():
         assert process.poll() is None, process.communicate()
