@@ -65,15 +65,13 @@ def free(scene, V):
     return vr.contact(scene, V, delta=vr.contact(scene, V, delta=0.0).delta_0)
 
 
-@pytest.mark.parametrize(
-    ("p", "other", "part"), [(ONE, None, 1.0), (THREE, None, 1.0), (THREE, ONE, 0.6)]
-)
-def test_a_thick_cover_is_a_half_space(p, other, part):
+@pytest.mark.parametrize(("other", "part"), [(None, 1.0), (ONE, 0.6)])
+def test_a_thick_cover_is_a_half_space(other, part):
     """At speeds where the memory, V T over l0, does not reach the core; beside a body that relaxes
     without slip.
     """
-    half = scene_on(vr.Bodies(p, other or vr.Prony.elastic(), part))
-    cover = scene_on(vr.Cover(p, nu=0.5, thickness=1e10, part=part, other=other))
+    half = scene_on(vr.Bodies(THREE, other or vr.Prony.elastic(), part))
+    cover = scene_on(vr.Cover(THREE, nu=0.5, thickness=1e10, part=part, other=other))
     V, creep = np.meshgrid(10.0 ** np.linspace(-13.0, 1.0, 29), [1e-3, 0.5, 0.99])
     delta = creep * vr.contact(half, V, delta=0.0).delta_star
     rolling = free(cover, V)
@@ -94,7 +92,7 @@ def test_a_thick_cover_is_a_half_space(p, other, part):
 def test_rows_are_the_solve(scene):
     """With twice as many terms of the pressure; slow and fast these lose digits of epsilon."""
     cover = scene.material
-    u = 10.0 ** np.linspace(-12.0, 12.0, 17)
+    u = 10.0 ** np.linspace(-12.0, 12.0, 7)
     truth = np.array([solve_at_speed(cover, each, orders=60) for each in u]).T
     lam, L, epsilon, half_space, cylinder, *shear = truth
     found = free(scene, u / KAPPA)
@@ -170,7 +168,7 @@ def test_a_thin_compressible_cover_is_a_foundation():
     assert close(2.0 * ratios[1] - ratios[0], 1.0, rel=0.1 * tol.COVER_THIN)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(
     st.floats(0.0, 0.5),
     st.floats(-0.8, 2.0),
@@ -214,9 +212,8 @@ def test_slow_and_fast(scene):
 
 
 def test_nothing_jumps_where_nu_is_a_half():
-    covers = (vr.Cover(THREE, nu=nu, thickness=0.5) for nu in (0.5 - 1e-9, 0.5))
     near, at = (
-        list(vr.contact(scene_on(cover), 0.03, delta=1e-3).as_dict().values()) for cover in covers
+        solve_at_speed(vr.Cover(THREE, nu=nu, thickness=0.5), 0.3) for nu in (0.5 - 1e-9, 0.5)
     )
     assert close(near, at, rel=tol.COVER_NU)
 
@@ -259,43 +256,23 @@ def test_energy_of_motions(scene, name):
     assert m.status in (vr.MotionStatus.DONE, vr.MotionStatus.RESTED)
     energy = 0.5 * m.V**2 + 0.5 * scene.j * m.omega**2
     lost = m.slip_loss, m.rolling_loss, m.brake_loss
-    put_in, lost = (
-        sum(0.0 if work is None else work for work in each) for each in ((m.work_torque,), lost)
-    )
+    put_in = 0.0 if m.work_torque is None else m.work_torque
+    lost = sum(0.0 if work is None else work for work in lost)
     assert close(
         energy + lost - put_in, energy[0], rel=tol.MOTION_RTOL * tol.COVER_RTOL, scale=energy.max()
     )
 
 
-def test_motions_follow_the_contact():
-    """V' and omega' by differences of a motion against the contact's forces; an ensemble is its
-    motions.
-    """
-    scene = SCENES[0]
-    h = 1e-3
-    options = {"t": 3.0 + h * np.array([-1.0, 0.0, 1.0]), "rtol": 1e-11, "torque": 0.01}
-    m = vr.roll(scene, 1.0, 0.2, **options)
-    c = vr.contact(scene, m.V[1], omega=m.omega[1])
-    rates = [
-        scene.gamma * (c.Q - c.M_half_space),
-        scene.gamma / scene.j * (0.01 - c.Q - c.M_cylinder),
-    ]
-    assert close(
-        [(each[2] - each[0]) / (2.0 * h) for each in (m.V, m.omega)], rates, rel=tol.COVER_RATES
-    )
-    assert np.array_equal(vr.ensemble(scene, [1.0, 0.5], [0.2, 0.5], **options).V[0], m.V)
-
-
 #: in one octave; elastic, on either side of an octave, with a Poisson's ratio each
-MANY = vr.Cover(ONE, nu=0.3, thickness=[0.52, 0.6, 0.52], on="base")
-MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5, 0.33], thickness=[0.3, 0.55, 0.45])
+MANY = vr.Cover(ONE, nu=0.3, thickness=[0.52, 0.6], on="base")
+MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5], thickness=[0.45, 0.55])
 
 
 @pytest.mark.parametrize("cover", [MANY, MANY_NU])
 def test_a_thickness_each(cover):
     """States and motions of many covers are those of each."""
     scene = scene_on(cover)
-    V = np.array([0.01, -0.5, 3.0])
+    V = np.array([0.01, -0.5])
     motion = (0.1, [1.0, 9.0])
     found = vr.contact(scene, V, delta=-2e-3, slopes=True)
     motions = vr.ensemble(scene, V, *motion, rtol=1e-10)
@@ -310,11 +287,11 @@ def test_a_thickness_each(cover):
 
 def test_a_load_each():
     """Cylinders whose loads, and with them thicknesses over l0, differ: of the covers above."""
-    load = np.array([1.2e3, 1.6e3])
+    load = [1.2e3, 1.6e3]
     belt = vr.Material(2e6, 0.3, ONE, 0.1, thickness=0.01)
     rollers = roller_of(RIGID, belt, load)
-    M = [roller_of(RIGID, belt, each).contact(1.0, delta=0.0).M for each in load]
-    assert close(rollers.contact(1.0, delta=0.0).M, M, rel=tol.COVER_EACH)
+    alone = roller_of(RIGID, belt, load[1]).contact(1.0, delta=0.0)
+    assert close(rollers.contact(1.0, delta=0.0).M[1], alone.M, rel=tol.COVER_EACH)
     assert rollers.validity(1.0).thick.value.shape == (2,)
 
 
@@ -416,7 +393,7 @@ C_FIELDS += ("dQ_dV", "dQ_domega", "dM_dV")
 
 
 @c_code.needs_cc
-@on_each
+@pytest.mark.parametrize("scene", [SCENES[2], scene_on(NIP)])
 def test_the_header_of_C_is_the_contact(tmp_path, scene):
     """In rows and behind them, forwards and backwards, below and above full slip, with slopes; N is
     NaN.
@@ -442,20 +419,16 @@ def test_the_header_of_C_is_the_contact(tmp_path, scene):
         assert close(values, known[name], rel=tol.COVER_IN_C, scale=scale, what=name)
 
 
-#: (force, torque): constant; others in test_steady.py
-LOADS = (0.0, 0.004), (0.004, 0.0), (-0.197, 0.2)
-
-
 @on_each
 def test_equilibria(scene):
-    """Forces balance at what is found; at rest they are the limit of slow rolling."""
-    for force, torque in LOADS:
+    """Constant forces balance at what is found, others in test_steady.py; at rest they are the
+    limit of slow rolling.
+    """
+    for force, torque in ((0.0, 0.004), (0.004, 0.0), (-0.197, 0.2)):
         s = vr.steady(scene, force=force, torque=torque)
         c = vr.contact(scene, s.V, omega=s.omega)
-        assert close(
-            [c.Q, c.beta], [c.M_half_space - s.force, s.beta], rel=tol.COVER_STEADY, scale=1.0
-        )
-        assert close(c.Q, s.torque - c.M_cylinder, rel=tol.COVER_STEADY, scale=1.0)
+        known = [c.M_half_space - s.force, s.torque - c.M_cylinder, s.beta]
+        assert close([c.Q, c.Q, c.beta], known, rel=tol.COVER_STEADY, scale=1.0)
     still = free(scene, 0.0)
     still = vr.contact(scene, 0.0, delta=still.delta_0 - 0.4 * still.delta_star)
     force = still.M_half_space - still.Q
@@ -490,13 +463,13 @@ def test_a_thickness_in_SI_units():
         thick = roller.validity(1.0).thick
         assert close(thick.value, 0.5 * found.length / 0.01, rel=tol.CONTACT)
         assert thick.holds
-        assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"
-        # on a slope the load, and with it l0, is less: of a scene too
-        tilted = (
-            roller.roll(0.0, 0.0, 0.3, slope=0.5).V,
-            scene.roll(0.0, 0.0, 0.3 / roller.T_ref, slope=0.5).V,
-        )
-        assert close(tilted[0][-1], tilted[1][-1] * roller.scale["V"], rel=1e-9)
+    short = dataclasses.replace(vr.Material.elastic(2e6, 0.49), thickness=0.004)
+    assert not roller_of(RIGID, short).validity(0.0).thick.holds
+    assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"
+    # on a slope the load, and with it l0, is less: of a scene too
+    tilted = roller.roll(0.0, 0.0, 0.3, slope=0.5).V[-1]
+    of_scene = scene.roll(0.0, 0.0, 0.3 / roller.T_ref, slope=0.5).V[-1]
+    assert close(tilted, of_scene * roller.scale["V"], rel=1e-9)
     thick = vr.Material(1e7, 0.3, ONE, 0.02, thickness=0.03)
     roller = roller_of(thick, THIN)
     cover = roller.scene().material
@@ -504,15 +477,12 @@ def test_a_thickness_in_SI_units():
     assert close(
         [cover.thickness, cover.other_thickness], np.array([0.03, 0.01]) / roller.l0, rel=tol.SCENE
     )
-    other = roller_of(THIN, thick).contact(1.0, omega=10.0), roller.contact(1.0, omega=10.0)
-    assert close(other[0].length, other[1].length, rel=tol.COVER_MIRROR)
 
 
-#: nu, h/l0, u; 2 kappa delta_0* of a cover on the base, of solves with boundary elements
+#: nu, h/l0, u; 2 kappa delta_0* of a cover on the base, of solves with boundary elements; others
+#: of nu = 1/2: test_claims.py
 MIRRORED = (
-    (ONE, 0.5, 0.5, 0.35, 0.1697361964),
     (ONE, 0.5, 0.3, 0.35, 0.1881772981),
-    (THREE, 0.5, 0.5, 0.1, 0.1731879514),
     (THREE, 0.45, 0.3, 1.0, 0.04104807),
     (ONE, 0.3, 1.0, 1.0, -0.08289535),
 )

@@ -1,4 +1,6 @@
-"""Scene.validity and Cylinder.validity: which assumptions a state strains."""
+"""Scene.validity and Cylinder.validity: which assumptions a state strains; of layers in
+test_covers.py.
+"""
 
 import warnings
 from dataclasses import replace
@@ -6,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import tolerances as tol
-from calls import SOFT, STEEL, pair
 from closeness import close
 
 import viscoroll as vr
@@ -25,26 +26,6 @@ def test_numbers_are_those_of_the_contact():
         found.under_axis.value, state.epsilon, tol.CONTACT, scale=1e-300
     )  # subnormals keep fewer digits
     assert np.array_equal(found.under_axis.holds, state.epsilon <= 1.0)
-
-
-# --- pairs ---
-
-
-def test_how_thick_the_layer_is():
-    """Half the contact over the thickness of the layer, up to which it sticks in front and slips
-    behind.
-    """
-    thick, thin = (replace(SOFT, thickness=thickness) for thickness in (0.02, 0.004))
-    for material, base, holds in (
-        (thick, STEEL, True),
-        (STEEL, thick, True),
-        (vr.Material.rigid(), thin, False),
-    ):
-        cylinder = pair(material, base, coupled=False)
-        found = cylinder.validity([0.0, 1e-3]).thick
-        length = cylinder.contact([0.0, 1e-3], delta=0.0, fields="length").length
-        assert close(found.value, 0.5 * length / (0.02 if holds else 0.004), tol.CONTACT)
-        assert np.array_equal(found.holds, [holds, holds])
 
 
 def test_lengths_in_mm_give_one_warning():

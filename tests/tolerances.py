@@ -667,14 +667,10 @@ BALANCE_OF_STEADY = 1e-9
 COVER_MOTION = 1e-10
 
 # --- covers: limits, sides and motions (test_covers.py) ---
-#: Bodies of a nip that change sides: sums in another order.
-COVER_MIRROR = 1e-12
 #: M V at 1e9 and 2e9 times the fastest rate.
 COVER_FAST = 1e-6
 #: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as
 #: large as that.
 COVER_NU = 1e-5
-#: Differences of V and omega over time: their second order.
-COVER_RATES = 1e-6
 #: Forces at equilibria, over P: roundings of Q near its limit.
 COVER_STEADY = 1e-13
