@@ -22,33 +22,23 @@ from calls import (
     data,
     file,
     netcdf,
+    of_law_source,
+    of_materials,
+    of_roller,
     pair,
     rows,
 )
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.materials.material_toml import read_materials
 from viscoroll.presets import PAPER_CYLINDER
-from viscoroll.roller_toml import read_law_source, read_roller
+from viscoroll.roller_toml import read_law_source
 from viscoroll.runs.uncertain_inputs import read_column
 
 pytestmark = [
     pytest.mark.usefixtures("here"),
     pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
 ]
-
-
-def of_roller(content):
-    return read_roller(file(content))
-
-
-def of_materials(content):
-    return read_materials(file(content))
-
-
-def of_law_source(content):
-    return read_law_source(file(content))
 
 
 def test_scenes_and_cylinders_of_files():

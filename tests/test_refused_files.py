@@ -18,6 +18,9 @@ from calls import (
     law_file,
     measured,
     netcdf,
+    of_law_source,
+    of_materials,
+    of_roller,
     run,
 )
 from refusals import each, refused
@@ -25,7 +28,7 @@ from refusals import each, refused
 import viscoroll as vr
 from viscoroll.materials.checked_netcdf import material_as_dataset
 from viscoroll.materials.material_toml import read_materials
-from viscoroll.roller_toml import read_law_source, read_roller
+from viscoroll.roller_toml import read_roller
 from viscoroll.runs import read_run
 
 pytestmark = pytest.mark.usefixtures("here")
@@ -33,18 +36,6 @@ pytestmark = pytest.mark.usefixtures("here")
 
 def of_dma(content):
     return vr.read_dma(file(content))
-
-
-def of_materials(content):
-    return read_materials(file(content))
-
-
-def of_roller(content):
-    return read_roller(file(content))
-
-
-def of_law_source(content):
-    return read_law_source(file(content))
 
 
 REFUSED = [
