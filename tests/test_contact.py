@@ -153,24 +153,6 @@ def test_carter():
     )
 
 
-@pytest.mark.parametrize("scene", [SCENE, EACH], ids=["one", "each"])
-def test_continuous_at_delta_star(scene):
-    """Q and beta run into full slip without a jump; at delta_star itself and above it is full
-    slip.
-    """
-    delta = delta_star(scene, V) * np.array([[1.0 - 1e-12], [1.0], [-1.0], [1.0 + 1e-12], [2.0]])
-    state = vr.contact(scene, V, delta=delta)
-    assert not state.full_slip[0].any()
-    assert state.full_slip[1:].all()
-    assert (state.beta[1:] == 0.0).all()
-    assert (np.abs(state.Q[1:]) == scene.mu).all()
-    assert close(state.Q[0], np.broadcast_to(scene.mu, V.shape), tol.CONTINUITY_Q)
-    assert (state.beta[0] > 0.0).all()
-    assert (
-        state.beta[0] <= tol.CONTINUITY_BETA * np.maximum(1.0, np.asarray(scene.alpha) / 1e4)
-    ).all()
-
-
 def test_a_stick_zone_that_rounds_to_nothing():
     """One rounding below delta_star, where L - D may round to 0: slip is not full, and there is no
     beta below 0.

@@ -92,11 +92,6 @@ CARTER = 1e-15
 #: Values at kappa V = 1e-12 and V = 1e14 from their limits: the limits' own error, kappa V and
 #: alpha^2/V; measured 1e-12 and below.
 SPEED_LIMIT = 1e-10
-#: beta at s = 1 - 1e-12: beta = (1 - s) F(zeta)/(zeta F'(0)) to leading order, and epsilon < 7 for
-#: alpha <= 1e4.
-CONTINUITY_BETA = 1e-10
-#: (mu - Q)/mu at s = 1 - 1e-12: of the order of (1 - s)^2, so rounding alone.
-CONTINUITY_Q = 1e-15
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 
@@ -372,9 +367,6 @@ DMA_EXACT = 1e-6
 DMA_MISFIT = 0.01
 #: alpha and E of that rubber from 60 points; measured 0.33 % (six seeds).
 DMA_ALPHA = 0.01
-#: M over nine decades of speed at the same load; measured 0.52 %, between the fit and wider grids
-#: 1.1 %.
-DMA_MOMENT = 0.02
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
 #: Files written with seven digits: half a unit of the last one, of loss over storage twice.
