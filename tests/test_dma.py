@@ -105,55 +105,34 @@ def test_shift_factors_are_found(points, noise, allowed):
 
 
 def test_times_are_those_at_the_reference():
-    """By a function whose constants are of another temperature, by factors in either order: all
-    modes times a_T.
+    """All modes times a_T, by functions whose constants are of any temperature and by factors in
+    either order.  A shift means a reference: T0 and the temperature of the factor 1, where they are
+    among the curves; else the middle curve.
     """
-    omega, *columns = isotherms(21, 0.0)
-    reference = -30.0
-    moved = vr.WLF(
-        C1=8.86 * 101.6 / 41.6, C2=41.6, T0=-60.0
-    )  # WLF of T0 = 0, C2 = 101.6, moved to -60
-    truth = np.sort(TAU * wlf(reference))
-    for shift, turn in (
-        (moved, 1),
-        (lambda T: 7.0 * wlf(T), -1),
-        (3.0 * wlf(TEMPERATURES), 1),
-        (wlf(TEMPERATURES), -1),
+    curves = isotherms(21, 0.0)
+    for shift, asked, meant in (
+        (vr.WLF(C1=8.86, C2=101.6, T0=0.0), None, 0.0),
+        # the same moved to -60
+        (vr.WLF(C1=8.86 * 101.6 / 41.6, C2=41.6, T0=-60.0), None, 0.0),
+        (lambda T: 7.0 * wlf(T), -30.0, -30.0),
+        (3.0 * wlf(TEMPERATURES), None, 0.0),
+        (wlf(TEMPERATURES) / wlf(20.0), None, 20.0),
     ):
-        curves = [column[::turn] for column in (omega, *columns)]
-        given = shift if callable(shift) else shift[::turn]
-        fit = vr.fit_prony(
-            *curves,
-            TAU.size,
-            temperature=TEMPERATURES[::turn],
-            reference=reference,
-            shift=given,
-            misfit=1e-6,
-        )
+        options = {"reference": asked, "shift": shift, "misfit": 1e-6}
+        fit = vr.fit_prony(*curves, TAU.size, temperature=TEMPERATURES, **options)
+        assert fit.material().temperature == fit.shifts.reference == meant
+        assert np.isnan(fit.shifts.mismatch).all()
+        truth = np.sort(TAU * wlf(meant))
         assert close(np.sort(fit.prony.tau) * fit.T_ref, truth, tol.DMA_SHIFTED_TIMES)
-        assert close(fit.shifts.a_T, wlf(TEMPERATURES) / wlf(reference), tol.DMA_SHIFTED_TIMES)
-        assert fit.material().temperature == fit.temperature == reference
-
-
-def test_the_reference_that_a_shift_means():
-    """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the
-    middle curve.
-    """
-    curves = isotherms(11, 0.0)
-    for shift, reference in (
-        (None, 0.0),
-        (wlf, 0.0),
-        (vr.WLF(C1=8.86, C2=101.6, T0=0.0), 0.0),
-        (vr.Arrhenius(energy=8e4, T0=-10.0), -10.0),
-        (wlf(TEMPERATURES) / wlf(20.0), 20.0),
-        (2.0 * wlf(TEMPERATURES), 0.0),
-        (vr.WLF(C1=8.86 * 101.6 / 201.6, C2=201.6, T0=100.0), 0.0),
-    ):
-        fit = vr.fit_prony(*curves, temperature=TEMPERATURES, shift=shift)
-        assert fit.shifts.reference == reference
-        assert np.isnan(fit.shifts.mismatch).all() == (shift is not None)
-        assert close(fit.shifts(reference), 1.0, tol.DMA_SHIFTED_TIMES)
-    assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
+        assert close(fit.shifts.a_T, wlf(TEMPERATURES) / wlf(meant), tol.DMA_SHIFTED_TIMES)
+    options["shift"] = shift[::-1]
+    turned = [column[::-1] for column in curves]
+    assert (
+        vr.fit_prony(*turned, TAU.size, temperature=TEMPERATURES[::-1], **options).prony
+        == fit.prony
+    )
+    shift = vr.Arrhenius(energy=8e4, T0=-10.0)
+    assert vr.fit_prony(*curves, temperature=TEMPERATURES, shift=shift).shifts.reference == -10.0
 
 
 def test_temperatures_as_they_were_measured():

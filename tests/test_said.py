@@ -1,6 +1,5 @@
 """What is answered with a warning, or with nothing; and what results say of what was found."""
 
-import dataclasses
 import warnings
 from dataclasses import replace
 
@@ -149,9 +148,7 @@ WARNED = {
     ],
     "the fit of the base misses its data | 20 %": [
         lambda: BELT.replace(
-            base=dataclasses.replace(
-                BELT.base, measured=dataclasses.replace(BELT.base.measured, misfit=0.2)
-            )
+            base=replace(BELT.base, measured=replace(BELT.base.measured, misfit=0.2))
         ).contact(0.1, delta=0.0)
     ],
 }
@@ -165,7 +162,7 @@ SILENT = {
         lambda: vr.roll(DMA_ROLLER, 0.0, 0.0, 1.0),
         lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0, force=0.1),
         lambda: ROLLER.contact([1.0, 9.0], delta=0.0),
-        lambda: ROLLER.replace(material=dataclasses.replace(ROLLER.material, density=None)).contact(
+        lambda: ROLLER.replace(material=replace(ROLLER.material, density=None)).contact(
             99.0, delta=0.0
         ),
     ],
@@ -173,9 +170,7 @@ SILENT = {
         lambda: BELT.contact([0.0, 0.1, 2.837], delta=0.0),
         lambda: BELT.roll(1.0, 10.0, [1.0, 4000.0]),
         lambda: BELT.steady(V=0.1, torque=0.0),
-        lambda: BELT.replace(base=dataclasses.replace(BELT.base, measured=None)).contact(
-            10.0, delta=0.0
-        ),
+        lambda: BELT.replace(base=replace(BELT.base, measured=None)).contact(10.0, delta=0.0),
     ],
 }
 

@@ -102,11 +102,9 @@ AXIS_LAW = 1e-14
 AXIS_UNSTEADY = 2e-14
 
 # --- an alpha or a material each (test_contact.py) ---
-# An alpha each, by the axis of alpha: lam, delta_star, M and Q, and beta times its condition;
-# epsilon.  As asked of the axis, and of epsilon what the row of one alpha has; 400 states from 1 to
-# 2^20 have 2.5e-15 at most.
+# An alpha each, by the axis of alpha: Q and its slope by delta over the condition of beta.  As
+# asked of the axis; 400 states from 1 to 2^20 have 2.5e-15 at most.
 EACH_ALPHA = 1e-14
-EACH_SHIFT = 2e-14
 #: dQ_dV of an alpha each over mu/V: terms of the axis that are left out; measured 1.6e-14.
 EACH_SLOPE_OVER_V = 2e-14
 #: A material each, by the grid of z, against its own table: values, as asked, which 300 random
