@@ -13,7 +13,9 @@ from drives import ON_DMA as DMA_ROLLER
 from run_files import FILES
 
 import viscoroll as vr
+from viscoroll.materials.material_toml import read_materials
 from viscoroll.measurements.identify import read_measurements
+from viscoroll.presets import read_law_source, read_roller
 from viscoroll.runs import read_run
 
 SCENE_FILE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
@@ -52,9 +54,9 @@ PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
 ROLLER = vr.presets.RUBBER_CYLINDER
 BOTH = PAPER, ROLLER
 T = np.linspace(0.0, 8.0, 33)
-#: the paper's cylinder by its parameters, and what is left of them where materials are given
-SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
+#: the paper's cylinder where materials are given, and by its parameters
 BARE = {"R": 0.1, "m": 35.5, "mu": 0.2}
+SI = BARE | {"E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97}
 HEAVY = replace(STEEL, density=7850.0)
 RUBBER = vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
 TREAD = vr.Material(
@@ -108,6 +110,18 @@ def file(content, name="file.toml"):
     """A file in the working directory."""
     Path(name).write_bytes(content if isinstance(content, bytes) else content.encode())
     return Path(name)
+
+
+def of_roller(content):
+    return read_roller(file(content))
+
+
+def of_materials(content):
+    return read_materials(file(content))
+
+
+def of_law_source(content):
+    return read_law_source(file(content))
 
 
 def run(name, old, new):

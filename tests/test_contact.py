@@ -37,34 +37,14 @@ EACH = vr.Scene(ALPHA, KAPPAS, MUS)
 # --- an alpha each, a material each ---
 
 
-def test_an_alpha_each_against_enclosures():
-    delta = S * delta_star(EACH, V)
-    found = vr.contact(EACH, V, delta=delta, fields=(*FIELDS, "grip"))
-    for n in range(ALPHA.size):
-        given = ALPHA[n], KAPPAS[n], MUS[n], V[n], delta[n]
-        with flint.ctx.workprec(200):
-            exact = contact_enclosure(*map(float, given))
-            left = float(1 - flint.arb(float(delta[n])) / exact["delta_star"])
-            for name in ("lam", "zeta", "epsilon", "delta_star", "Q", "M", "beta"):
-                bound = tol.EACH_SHIFT if name == "epsilon" else tol.EACH_ALPHA
-                bound /= left if name == "beta" else 1.0
-                assert close(getattr(found, name)[n], float(exact[name]), bound), (
-                    name,
-                    ALPHA[n],
-                    V[n],
-                )
-            grip = float(1 - exact["Q"] / float(MUS[n]))
-            assert close(found.grip[n], grip, 2.0 * tol.EACH_ALPHA / left), (ALPHA[n], V[n])
-
-
-@pytest.mark.parametrize("alpha", [2.52, 27.5, 32.1])
-def test_slopes_of_an_alpha_each_where_a_row_ends(alpha):
+def test_slopes_of_an_alpha_each_where_a_row_ends():
     """Slopes of Q by the axis of alpha against the rows of that alpha, where mu V/(delta_star -
     delta) passes 2^n.
 
     Terms of the axis that no value needs were once missing in slopes at the ends of rows: dQ_dV was
     off by 3e-13 mu/V.
     """
+    alpha = 27.5
     scene = vr.Scene(alpha, 1.0, 1.0)
     V = np.geomspace(0.05, 20.0, 4000)
     s = np.array([[1e-3], [0.02], [0.05], [0.3], [0.9]])
@@ -142,33 +122,18 @@ def test_carter():
     scene = vr.Scene(1.0, KAPPA, MU)
     star = MU / (2.0 * KAPPA)
     delta = np.concatenate([S, -S]) * star
-    state = vr.contact(scene, np.tile(V, 2), delta=delta, slopes=True)
+    V_twice = np.tile(V, 2)
+    state = vr.contact(scene, V_twice, delta=delta, slopes=True)
     for name, exact in (("lam", 1.0), ("epsilon", 0.0), ("M", 0.0), ("delta_star", star)):
         assert (getattr(state, name) == exact).all(), name
     assert close(state.beta, 1.0 - abs(delta) / star, tol.CARTER, scale=1.0)
     assert close(state.Q, 4 * KAPPA * delta * (1 - abs(delta) * KAPPA / MU), tol.CARTER)
-    among = vr.contact(scene.replace(alpha=np.ones(120)), np.tile(V, 2), delta=delta, slopes=True)
+    grip = vr.contact(scene, V_twice, delta=delta, fields="grip").grip
+    assert close(grip, (1.0 - abs(delta) / star) ** 2, tol.CARTER, scale=1.0)
+    among = vr.contact(scene.replace(alpha=np.ones(120)), V_twice, delta=delta, slopes=True)
     assert all(
         np.array_equal(value, getattr(state, name)) for name, value in among.as_dict().items()
     )
-
-
-@pytest.mark.parametrize("scene", [SCENE, EACH], ids=["one", "each"])
-def test_continuous_at_delta_star(scene):
-    """Q and beta run into full slip without a jump; at delta_star itself and above it is full
-    slip.
-    """
-    delta = delta_star(scene, V) * np.array([[1.0 - 1e-12], [1.0], [-1.0], [1.0 + 1e-12], [2.0]])
-    state = vr.contact(scene, V, delta=delta)
-    assert not state.full_slip[0].any()
-    assert state.full_slip[1:].all()
-    assert (state.beta[1:] == 0.0).all()
-    assert (np.abs(state.Q[1:]) == scene.mu).all()
-    assert close(state.Q[0], np.broadcast_to(scene.mu, V.shape), tol.CONTINUITY_Q)
-    assert (state.beta[0] > 0.0).all()
-    assert (
-        state.beta[0] <= tol.CONTINUITY_BETA * np.maximum(1.0, np.asarray(scene.alpha) / 1e4)
-    ).all()
 
 
 def test_a_stick_zone_that_rounds_to_nothing():

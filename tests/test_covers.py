@@ -5,6 +5,7 @@ elements: make prove.
 import ctypes
 import dataclasses
 import json
+from functools import partial
 
 import c_code
 import numpy as np
@@ -23,7 +24,7 @@ from viscoroll.tables.law_dataset import check_table
 
 ONE = vr.Prony([10.0], [1.0 / 11.0])
 THREE = vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003])
-WIDE = vr.Prony(np.logspace(-1.0, 0.5, 20), np.logspace(3.0, -9.0, 20))
+WIDE = vr.Prony(np.logspace(-1.0, 0.5, 5), np.logspace(3.0, -9.0, 5))
 KAPPA = 10.0
 MU = 0.3
 THIN = vr.Material(2e6, 0.49, THREE, 0.1, thickness=0.01)
@@ -57,7 +58,7 @@ ALL = (
     scene_on(vr.Cover(1.0, nu=0.5, thickness=0.8, part=0.3, other=THREE, on="base")),
     scene_on(NIP),
 )
-on_each = pytest.mark.parametrize("scene", [*SCENES, scene_on(NIP)])
+on_each = pytest.mark.parametrize("scene", [*SCENES, ALL[-1]])
 
 
 def free(scene, V):
@@ -65,15 +66,12 @@ def free(scene, V):
     return vr.contact(scene, V, delta=vr.contact(scene, V, delta=0.0).delta_0)
 
 
-@pytest.mark.parametrize(
-    ("p", "other", "part"), [(ONE, None, 1.0), (THREE, None, 1.0), (THREE, ONE, 0.6)]
-)
-def test_a_thick_cover_is_a_half_space(p, other, part):
+def test_a_thick_cover_is_a_half_space():
     """At speeds where the memory, V T over l0, does not reach the core; beside a body that relaxes
     without slip.
     """
-    half = scene_on(vr.Bodies(p, other or vr.Prony.elastic(), part))
-    cover = scene_on(vr.Cover(p, nu=0.5, thickness=1e10, part=part, other=other))
+    half = scene_on(vr.Bodies(THREE, ONE, 0.6))
+    cover = scene_on(vr.Cover(THREE, nu=0.5, thickness=1e10, part=0.6, other=ONE))
     V, creep = np.meshgrid(10.0 ** np.linspace(-13.0, 1.0, 29), [1e-3, 0.5, 0.99])
     delta = creep * vr.contact(half, V, delta=0.0).delta_star
     rolling = free(cover, V)
@@ -83,10 +81,10 @@ def test_a_thick_cover_is_a_half_space(p, other, part):
     for name in ("lam", "epsilon", "delta_star", "M", "M_cylinder", "Q"):
         scale = {"Q": MU, "M_cylinder": known.M}.get(name, 0.0)
         of = found if name == "Q" else rolling
-        assert close(of[name], known[name], rel=tol.COVER_THICK, scale=scale, what=name)
+        assert close(of[name], known[name], tol.COVER_THICK, scale=scale, what=name)
     x, V = np.meshgrid(np.linspace(-1.5, 2.5, 101), [0.0, 1e-6, 1e-3, 0.1, 10.0, -1.0])
     known, found = (vr.stress(scene, x, V, delta=0.0) for scene in (half, cover))
-    assert close(found.p, known.p, rel=tol.COVER_PRESSURE, scale=known.p.max())
+    assert close(found.p, known.p, tol.COVER_PRESSURE, scale=known.p.max())
     assert list(found.keys()) == ["p"]
 
 
@@ -94,32 +92,20 @@ def test_a_thick_cover_is_a_half_space(p, other, part):
 def test_rows_are_the_solve(scene):
     """With twice as many terms of the pressure; slow and fast these lose digits of epsilon."""
     cover = scene.material
-    u = 10.0 ** np.linspace(-12.0, 12.0, 17)
+    u = 10.0 ** np.array([-12.0, -1.5, 0.0, 1.5, 12.0])
     truth = np.array([solve_at_speed(cover, each, orders=60) for each in u]).T
     lam, L, epsilon, half_space, cylinder, *shear = truth
     found = free(scene, u / KAPPA)
     rel = tol.COVER_LOGARITHMS if cover.other.alpha > 1.0 else tol.COVER_ROWS
+    known = lam, 0.5 * MU / KAPPA * L
+    assert close([found.lam, found.delta_star], known, tol.COVER_ROWS)
+    assert close(found.epsilon, epsilon, tol.COVER_ROWS, scale=1.0)
     M = (half_space + cylinder) * u / KAPPA
-    known = {
-        "lam": lam,
-        "delta_star": 0.5 * MU / KAPPA * L,
-        "M_half_space": half_space * u / KAPPA,
-        "epsilon": epsilon,
-    }
-    for name, exact in known.items():
-        scale = {"M_half_space": M, "epsilon": 1.0}.get(name, 0.0)
-        assert close(
-            found[name],
-            exact,
-            rel=rel if name[0] == "M" else tol.COVER_ROWS,
-            scale=scale,
-            what=name,
-        )
+    assert close(found.M_half_space, half_space * u / KAPPA, rel=rel, scale=M)
     rel = tol.COVER_FREE if min(cover.nu, cover.other_nu) < 0.5 else tol.COVER_SHEAR
     assert close(2.0 * KAPPA * found.delta_0, shear[0] + shear[1], rel=rel, scale=1.0)
-    full = vr.contact(
-        scene, u / KAPPA, delta=1.0, fields=("lam", "epsilon", "M_half_space", "M_cylinder")
-    )
+    fields = "lam", "epsilon", "M_half_space", "M_cylinder"
+    full = vr.contact(scene, u / KAPPA, delta=1.0, fields=fields)
     g = shear[2] + shear[3]
     limited = (1.0 + (2.0 * g / (MU * L)) ** 4) ** -0.25
     of_Q = [MU * shear[4], MU * shear[5]]
@@ -136,9 +122,9 @@ def test_rows_join(scene):
     c = free(scene, V)
     full = vr.contact(scene, V, delta=1.0)
     for name in ("lam", "epsilon", "delta_star", "M"):
-        assert close(*c[name], rel=tol.COVER_JOIN, what=name)
+        assert close(*c[name], tol.COVER_JOIN, what=name)
     for found in (c.delta_0, full.M, full.lam / KAPPA, full.epsilon / KAPPA):
-        assert close(*found, rel=tol.COVER_JOIN_SHEAR, scale=c.delta_star[1] / MU)
+        assert close(*found, tol.COVER_JOIN_SHEAR, scale=c.delta_star[1] / MU)
 
 
 @pytest.mark.parametrize("nu", [0.3, 0.5])
@@ -152,9 +138,9 @@ def test_an_elastic_cover(nu):
 
     state = found(1.0)
     assert state.M == 0.0
-    assert close(state.lam**2 * layer.load(2.0 / state.lam, nu), 1.0, rel=tol.COVER_ELASTIC)
+    assert close(state.lam**2 * layer.load(2.0 / state.lam, nu), 1.0, tol.COVER_ELASTIC)
     local = -(0.5 - nu) / (1.0 - nu) / (np.pi * KAPPA)
-    assert close(found(1e12, on="base").delta_0, local, rel=tol.COVER_LOCAL, scale=1e-3)
+    assert close(found(1e12, on="base").delta_0, local, tol.COVER_LOCAL, scale=1e-3)
     assert abs(found(1e12, part=0.5, other_nu=nu).delta_0) < tol.COVER_THICK
 
 
@@ -166,11 +152,11 @@ def test_a_thin_compressible_cover_is_a_foundation():
         state = solve(modes, 1.0, theta)
         found = np.array([state.load, state.shift, shear_of(modes, 1.0, state).moments.sum()])
         ratios.append(found / layer.springs(ONE, 1.0, 1.0 / theta, 0.0))
-    assert close(ratios[1], 1.0, rel=tol.COVER_THIN)
-    assert close(2.0 * ratios[1] - ratios[0], 1.0, rel=0.1 * tol.COVER_THIN)
+    assert close(ratios[1], 1.0, tol.COVER_THIN)
+    assert close(2.0 * ratios[1] - ratios[0], 1.0, 0.1 * tol.COVER_THIN)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(
     st.floats(0.0, 0.5),
     st.floats(-0.8, 2.0),
@@ -196,10 +182,8 @@ def test_any_cover(nu, thickness, strength, time, part, on):
     assert np.array_equal(c.full_slip, np.abs(c.Q) == MU)
     assert np.all(np.diff(state.delta_star, axis=0) <= tol.COVER_THICK)
     assert np.array_equal([c.Q[:, 12], c.beta[:, 12]], [0.0 * V, 1.0 + 0.0 * V])
-    assert all(
-        np.array_equal(back[name], (-1.0) ** (name in "QM") * c[name])
-        for name in ("Q", "M", "beta", "lam")
-    )
+    for name, sign in (("Q", -1.0), ("M", -1.0), ("beta", 1.0), ("lam", 1.0)):
+        assert np.array_equal(back[name], sign * c[name])
 
 
 @on_each
@@ -209,16 +193,15 @@ def test_slow_and_fast(scene):
     """
     slow, *fast = (free(scene, V).M for V in (1e-15, 1e8, 2e8))
     rate = slow / (1e-15 * scene.material.total.T_mean)
-    assert close(rate, 1.0, rel=tol.COVER_ROWS) if scene.material.part == 1.0 else 0.8 < rate < 1.0
-    assert close(2.0 * fast[1], fast[0], rel=tol.COVER_FAST)
+    assert close(rate, 1.0, tol.COVER_ROWS) if scene.material.part == 1.0 else 0.8 < rate < 1.0
+    assert close(2.0 * fast[1], fast[0], tol.COVER_FAST)
 
 
 def test_nothing_jumps_where_nu_is_a_half():
-    covers = (vr.Cover(THREE, nu=nu, thickness=0.5) for nu in (0.5 - 1e-9, 0.5))
     near, at = (
-        list(vr.contact(scene_on(cover), 0.03, delta=1e-3).as_dict().values()) for cover in covers
+        solve_at_speed(vr.Cover(THREE, nu=nu, thickness=0.5), 0.3) for nu in (0.5 - 1e-9, 0.5)
     )
-    assert close(near, at, rel=tol.COVER_NU)
+    assert close(near, at, tol.COVER_NU)
 
 
 @on_each
@@ -232,7 +215,7 @@ def test_slopes(scene):
         )
         for name, scale in (("Q", MU), ("M", found.M)):
             slope = (up[name] - down[name]) / (2.0 * h * V)
-            assert close(found[f"d{name}_dV"], slope, rel=tol.COVER_SLOPES, scale=scale / V)
+            assert close(found[f"d{name}_dV"], slope, tol.COVER_SLOPES, scale=scale / V)
 
 
 MOTIONS = {
@@ -259,62 +242,40 @@ def test_energy_of_motions(scene, name):
     assert m.status in (vr.MotionStatus.DONE, vr.MotionStatus.RESTED)
     energy = 0.5 * m.V**2 + 0.5 * scene.j * m.omega**2
     lost = m.slip_loss, m.rolling_loss, m.brake_loss
-    put_in, lost = (
-        sum(0.0 if work is None else work for work in each) for each in ((m.work_torque,), lost)
-    )
+    put_in = 0.0 if m.work_torque is None else m.work_torque
+    lost = sum(0.0 if work is None else work for work in lost)
     assert close(
-        energy + lost - put_in, energy[0], rel=tol.MOTION_RTOL * tol.COVER_RTOL, scale=energy.max()
+        energy + lost - put_in, energy[0], tol.MOTION_RTOL * tol.COVER_RTOL, scale=energy.max()
     )
-
-
-def test_motions_follow_the_contact():
-    """V' and omega' by differences of a motion against the contact's forces; an ensemble is its
-    motions.
-    """
-    scene = SCENES[0]
-    h = 1e-3
-    options = {"t": 3.0 + h * np.array([-1.0, 0.0, 1.0]), "rtol": 1e-11, "torque": 0.01}
-    m = vr.roll(scene, 1.0, 0.2, **options)
-    c = vr.contact(scene, m.V[1], omega=m.omega[1])
-    rates = [
-        scene.gamma * (c.Q - c.M_half_space),
-        scene.gamma / scene.j * (0.01 - c.Q - c.M_cylinder),
-    ]
-    assert close(
-        [(each[2] - each[0]) / (2.0 * h) for each in (m.V, m.omega)], rates, rel=tol.COVER_RATES
-    )
-    assert np.array_equal(vr.ensemble(scene, [1.0, 0.5], [0.2, 0.5], **options).V[0], m.V)
 
 
 #: in one octave; elastic, on either side of an octave, with a Poisson's ratio each
-MANY = vr.Cover(ONE, nu=0.3, thickness=[0.52, 0.6, 0.52], on="base")
-MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5, 0.33], thickness=[0.3, 0.55, 0.45])
+MANY = vr.Cover(ONE, nu=0.3, thickness=[0.52, 0.6], on="base")
+MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5], thickness=[0.45, 0.55])
 
 
 @pytest.mark.parametrize("cover", [MANY, MANY_NU])
 def test_a_thickness_each(cover):
     """States and motions of many covers are those of each."""
     scene = scene_on(cover)
-    V = np.array([0.01, -0.5, 3.0])
+    V = np.array([0.01, -0.5])
     motion = (0.1, [1.0, 9.0])
     found = vr.contact(scene, V, delta=-2e-3, slopes=True)
     motions = vr.ensemble(scene, V, *motion, rtol=1e-10)
     for n, each in enumerate(cover):
         one = scene_on(each)
         for name, value in vr.contact(one, V[n], delta=-2e-3, slopes=True).as_dict().items():
-            assert close(found[name][n], value, rel=tol.COVER_EACH, what=name)
-        assert close(
-            motions.V[n], vr.roll(one, V[n], *motion, rtol=1e-10).V, rel=tol.COVER_EACH_MOTION
-        )
+            assert close(found[name][n], value, tol.COVER_EACH, what=name)
+        assert close(motions.V[n], vr.roll(one, V[n], *motion, rtol=1e-10).V, tol.COVER_EACH_MOTION)
 
 
 def test_a_load_each():
     """Cylinders whose loads, and with them thicknesses over l0, differ: of the covers above."""
-    load = np.array([1.2e3, 1.6e3])
+    load = [1.2e3, 1.6e3]
     belt = vr.Material(2e6, 0.3, ONE, 0.1, thickness=0.01)
     rollers = roller_of(RIGID, belt, load)
-    M = [roller_of(RIGID, belt, each).contact(1.0, delta=0.0).M for each in load]
-    assert close(rollers.contact(1.0, delta=0.0).M, M, rel=tol.COVER_EACH)
+    alone = roller_of(RIGID, belt, load[1]).contact(1.0, delta=0.0)
+    assert close(rollers.contact(1.0, delta=0.0).M[1], alone.M, tol.COVER_EACH)
     assert rollers.validity(1.0).thick.value.shape == (2,)
 
 
@@ -333,24 +294,17 @@ def test_a_law_of_a_roller_on_disk(tmp_path):
         np.array_equal(content[name], dataset[name].values) for name in ("lam", "limit", "lam_Q")
     )
     assert law.pair == roller.pair
-    for what in (law, dataset):  # delta_0 does not vary with mu: no grid holds every kappa and mu
-        refused(
-            lambda what=what: vr.tables.build(what, [0.1], delta=[0.0]),
-            "what = ",
-            "a law of half-spaces",
-        )
+    # delta_0 does not vary with mu: no grid holds every kappa and mu
+    grid = partial(vr.tables.build, law, [0.1], delta=[0.0])
+    refused(grid, "what = ", "a law of half-spaces")
     loaded = roller.replace(material=law, base=None)
     assert loaded.contact(1.0, delta=1e-3).as_dict() == roller.contact(1.0, delta=1e-3).as_dict()
-    refused(
-        lambda: loaded.replace(load=2.1e3).contact(1.0, delta=0.0),
-        "material",
-        "thickness/l0 = 0.5",
-        "0.49",
-    )
+    pressed = partial(loaded.replace(load=2.1e3).contact, 1.0, delta=0.0)
+    refused(pressed, "material", "thickness/l0 = 0.5", "0.49")
 
 
 @pytest.mark.parametrize(
-    ("scene", "V"), [(ALL[1], 0.0), (ALL[3], 2e-3), *((scene, 0.2) for scene in ALL)]
+    ("scene", "V"), [(ALL[1], 0.0), (ALL[3], 2e-3), *((scene, 0.2) for scene in ALL[2:])]
 )
 def test_pressure_of_a_cover_makes_the_parabola(scene, V):
     """Its integral is the load, its moment M, and the slope that both bodies take on, by Fourier's
@@ -369,9 +323,9 @@ def test_pressure_of_a_cover_makes_the_parabola(scene, V):
     p, on_grid = (
         vr.stress(scene, 0.5 * c.lam * (c.epsilon + each), V, delta=c.delta).p for each in (y, grid)
     )
-    assert close(0.5 * c.lam * weights @ p, load, rel=tol.COVER_PRESSURE)
+    assert close(0.5 * c.lam * weights @ p, load, tol.COVER_PRESSURE)
     moment = 0.25 * c.lam**2 * weights @ (p * (y + c.epsilon)) / (load * KAPPA)
-    assert close(moment, c.M, rel=tol.COVER_MOMENT, scale=max(abs(c.M), c.lam))
+    assert close(moment, c.M, tol.COVER_MOMENT, scale=max(abs(c.M), c.lam))
     v = 2.0 * np.pi * np.fft.rfftfreq(count, 1.0 / cells)
     kernel = 0.0
     for share, name in ((cover.share, "cylinder"), (1.0 - cover.share, "base")):
@@ -385,7 +339,7 @@ def test_pressure_of_a_cover_makes_the_parabola(scene, V):
     slopes = (-1j * factor * np.fft.rfft(p) for factor, p in ((1.0, hertz), (kernel, on_grid)))
     of_hertz, found = (np.fft.irfft(slope, count)[near] for slope in slopes)
     unit = np.mean(of_hertz / grid[near]) * c.lam
-    assert close(found, unit * (grid[near] + c.epsilon), rel=tol.COVER_SLOPE, scale=abs(unit))
+    assert close(found, unit * (grid[near] + c.epsilon), tol.COVER_SLOPE, scale=abs(unit))
 
 
 #: evaluates the header for arrays of states, as the fields and slopes below
@@ -416,12 +370,12 @@ C_FIELDS += ("dQ_dV", "dQ_domega", "dM_dV")
 
 
 @c_code.needs_cc
-@on_each
-def test_the_header_of_C_is_the_contact(tmp_path, scene):
+def test_the_header_of_C_is_the_contact(tmp_path):
     """In rows and behind them, forwards and backwards, below and above full slip, with slopes; N is
     NaN.
     """
-    vr.tables.export(vr.tables.law(scene.material), tmp_path / "cover.h")
+    scene = ALL[-1]
+    vr.tables.export(vr.tables.law(NIP), tmp_path / "cover.h")
     states = c_code.compiled(tmp_path, "states", C_STATES).states
     speeds = 10.0 ** np.linspace(-6.0, 14.0, 61)
     V, part = (
@@ -439,23 +393,19 @@ def test_the_header_of_C_is_the_contact(tmp_path, scene):
         scale = (
             np.abs(known[name]).max() if name in ("Q", "beta", "delta_0") else np.abs(known[name])
         )
-        assert close(values, known[name], rel=tol.COVER_IN_C, scale=scale, what=name)
-
-
-#: (force, torque): constant; others in test_steady.py
-LOADS = (0.0, 0.004), (0.004, 0.0), (-0.197, 0.2)
+        assert close(values, known[name], tol.COVER_IN_C, scale=scale, what=name)
 
 
 @on_each
 def test_equilibria(scene):
-    """Forces balance at what is found; at rest they are the limit of slow rolling."""
-    for force, torque in LOADS:
+    """Constant forces balance at what is found, others in test_steady.py; at rest they are the
+    limit of slow rolling.
+    """
+    for force, torque in ((0.0, 0.004), (0.004, 0.0), (-0.197, 0.2)):
         s = vr.steady(scene, force=force, torque=torque)
         c = vr.contact(scene, s.V, omega=s.omega)
-        assert close(
-            [c.Q, c.beta], [c.M_half_space - s.force, s.beta], rel=tol.COVER_STEADY, scale=1.0
-        )
-        assert close(c.Q, s.torque - c.M_cylinder, rel=tol.COVER_STEADY, scale=1.0)
+        known = [c.M_half_space - s.force, s.torque - c.M_cylinder, s.beta]
+        assert close([c.Q, c.Q, c.beta], known, tol.COVER_STEADY, scale=1.0)
     still = free(scene, 0.0)
     still = vr.contact(scene, 0.0, delta=still.delta_0 - 0.4 * still.delta_star)
     force = still.M_half_space - still.Q
@@ -463,7 +413,7 @@ def test_equilibria(scene):
     rest = vr.steady(scene, force=force, torque=torque)
     slow = vr.steady(scene, V=1e-12, torque=torque)
     assert rest.V[0] == 0.0
-    assert close([rest.delta[0], slow.delta[0]], still.delta, rel=tol.COVER_REST)
+    assert close([rest.delta[0], slow.delta[0]], still.delta, tol.COVER_REST)
 
 
 def test_a_thickness_in_SI_units():
@@ -473,7 +423,6 @@ def test_a_thickness_in_SI_units():
     steel = vr.Material.elastic(2e11, 0.3)
     thin = dataclasses.replace(THIN, prony=ONE)
     for material, base, on in (
-        (thin, RIGID, "cylinder"),
         (RIGID, thin, "base"),
         (thin, steel, "cylinder"),
     ):
@@ -483,36 +432,32 @@ def test_a_thickness_in_SI_units():
         assert scene.material.on == on
         plain = scene.replace(material=vr.Cover(ONE, nu=0.49, thickness=0.01 / roller.l0, on=on))
         known = vr.contact(plain, 1.0 / roller.scale["V"], delta=0.0)
+        rel = tol.COVER_ON_STEEL if base is steel else tol.SCENE
         for name in ("lam", "epsilon", "delta_star", "delta_0"):
-            assert close(
-                found[name], known[name], rel=tol.COVER_ON_STEEL if base is steel else tol.SCENE
-            )
+            assert close(found[name], known[name], rel=rel)
         thick = roller.validity(1.0).thick
-        assert close(thick.value, 0.5 * found.length / 0.01, rel=tol.CONTACT)
+        assert close(thick.value, 0.5 * found.length / 0.01, tol.CONTACT)
         assert thick.holds
-        assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"
-        # on a slope the load, and with it l0, is less: of a scene too
-        tilted = (
-            roller.roll(0.0, 0.0, 0.3, slope=0.5).V,
-            scene.roll(0.0, 0.0, 0.3 / roller.T_ref, slope=0.5).V,
-        )
-        assert close(tilted[0][-1], tilted[1][-1] * roller.scale["V"], rel=1e-9)
+    short = dataclasses.replace(vr.Material.elastic(2e6, 0.49), thickness=0.004)
+    assert not roller_of(RIGID, short).validity(0.0).thick.holds
+    assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"
+    # on a slope the load, and with it l0, is less: of a scene too
+    tilted = roller.roll(0.0, 0.0, 0.3, slope=0.5).V[-1]
+    of_scene = scene.roll(0.0, 0.0, 0.3 / roller.T_ref, slope=0.5).V[-1]
+    assert close(tilted, of_scene * roller.scale["V"], rel=1e-9)
     thick = vr.Material(1e7, 0.3, ONE, 0.02, thickness=0.03)
     roller = roller_of(thick, THIN)
     cover = roller.scene().material
     assert (cover.layer, cover.other) == (ONE, THREE.slower(0.1 / 0.02))
     assert close(
-        [cover.thickness, cover.other_thickness], np.array([0.03, 0.01]) / roller.l0, rel=tol.SCENE
+        [cover.thickness, cover.other_thickness], np.array([0.03, 0.01]) / roller.l0, tol.SCENE
     )
-    other = roller_of(THIN, thick).contact(1.0, omega=10.0), roller.contact(1.0, omega=10.0)
-    assert close(other[0].length, other[1].length, rel=tol.COVER_MIRROR)
 
 
-#: nu, h/l0, u; 2 kappa delta_0* of a cover on the base, of solves with boundary elements
+#: nu, h/l0, u; 2 kappa delta_0* of a cover on the base, of solves with boundary elements; others
+#: of nu = 1/2: test_claims.py
 MIRRORED = (
-    (ONE, 0.5, 0.5, 0.35, 0.1697361964),
     (ONE, 0.5, 0.3, 0.35, 0.1881772981),
-    (THREE, 0.5, 0.5, 0.1, 0.1731879514),
     (THREE, 0.45, 0.3, 1.0, 0.04104807),
     (ONE, 0.3, 1.0, 1.0, -0.08289535),
 )
@@ -525,4 +470,4 @@ def test_the_mirrored_strain(series, nu, thickness, u, known):
         *_, f_h, f_c, g_h, g_c, _, _ = solve_at_speed(
             vr.Cover(series, nu=nu, thickness=thickness, on=on), u
         )
-        assert close(f_h + f_c + g_h + g_c, sign * known, rel=tol.COVER_MIRRORED, scale=1.0)
+        assert close(f_h + f_c + g_h + g_c, sign * known, tol.COVER_MIRRORED, scale=1.0)

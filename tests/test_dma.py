@@ -10,10 +10,12 @@ import tolerances as tol
 from closeness import close
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from places import DATA, ROOT
+from places import DATA
 
 import viscoroll as vr
 from viscoroll.measurements.spectrum import FLOOR
+
+pytestmark = pytest.mark.usefixtures("two_speeds")
 
 PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
 #: a rubber of ten modes over eight decades, times in s
@@ -34,30 +36,10 @@ def curve(omega, strengths=STRENGTHS, tau=TAU, E=E, noise=0.0, seed=1):
     return omega, storage * errors[0], loss * errors[1]
 
 
-def moment(prony, kappa, V):
-    return vr.contact(vr.Scene(material=prony, kappa=kappa, mu=1.0), V, delta=0.0, fields="M").M
-
-
 WHOLE = np.logspace(-2.5, 6.5, 60)
 
 
 # --- what is recovered ---
-
-
-@pytest.mark.usefixtures("two_speeds")
-@pytest.mark.parametrize("seed", [1, 2])
-def test_a_rubber_of_ten_modes_with_noise(seed):
-    fit = vr.fit_prony(*curve(WHOLE, noise=0.005, seed=seed))
-    assert max(fit.misfit) <= tol.DMA_MISFIT
-    assert fit.reached
-    assert fit.plateau
-    assert fit.prony.E.size <= TAU.size
-    assert close(fit.alpha, ALPHA, tol.DMA_ALPHA)
-    assert close(fit.E, E, tol.DMA_ALPHA)
-    V = np.logspace(-3, 6, 40)  # m/s on R = 1 m, kappa = 1 at the true modulus
-    true = moment(RUBBER, 1.0, V)
-    found = moment(fit.prony, np.sqrt(fit.E / E), V * fit.T_ref)
-    assert close(found, true, tol.DMA_MOMENT)
 
 
 def test_two_modes_are_found_exactly():
@@ -69,7 +51,7 @@ def test_two_modes_are_found_exactly():
         assert not fit.outside.any()
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(3, 40), st.floats(0.0, 0.3), st.floats(0.5, 9.0))
 @example(6140328, 6, 0.3, 1.0)
 def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, decades):
@@ -122,60 +104,37 @@ def test_shift_factors_are_found(points, noise, allowed):
     assert again.prony == fit.prony
 
 
-@pytest.mark.usefixtures("two_speeds")
-@pytest.mark.parametrize("reference", [20.0, -30.0])
-def test_times_are_those_at_the_reference(reference):
-    """By a function whose constants are of another temperature, by factors in either order: all
-    modes times a_T.
-    """
-    omega, *columns = isotherms(21, 0.0)
-    moved = vr.WLF(
-        C1=8.86 * 101.6 / 41.6, C2=41.6, T0=-60.0
-    )  # WLF of T0 = 0, C2 = 101.6, moved to -60
-    truth = np.sort(TAU * wlf(reference))
-    for shift, turn in (
-        (moved, 1),
-        (lambda T: 7.0 * wlf(T), -1),
-        (3.0 * wlf(TEMPERATURES), 1),
-        (wlf(TEMPERATURES), -1),
-    ):
-        curves = [column[::turn] for column in (omega, *columns)]
-        given = shift if callable(shift) else shift[::turn]
-        fit = vr.fit_prony(
-            *curves,
-            TAU.size,
-            temperature=TEMPERATURES[::turn],
-            reference=reference,
-            shift=given,
-            misfit=1e-6,
-        )
-        assert close(np.sort(fit.prony.tau) * fit.T_ref, truth, tol.DMA_SHIFTED_TIMES)
-        assert close(fit.shifts.a_T, wlf(TEMPERATURES) / wlf(reference), tol.DMA_SHIFTED_TIMES)
-        assert fit.material().temperature == fit.temperature == reference
-
-
-def test_the_reference_that_a_shift_means():
-    """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the
-    middle curve.
+def test_times_are_those_at_the_reference():
+    """All modes times a_T, by functions whose constants are of any temperature and by factors in
+    either order.  A shift means a reference: T0 and the temperature of the factor 1, where they are
+    among the curves; else the middle curve.
     """
     curves = isotherms(21, 0.0)
-    for shift, reference in (
-        (None, 0.0),
-        (wlf, 0.0),
-        (vr.WLF(C1=8.86, C2=101.6, T0=0.0), 0.0),
-        (vr.Arrhenius(energy=8e4, T0=-10.0), -10.0),
-        (wlf(TEMPERATURES) / wlf(20.0), 20.0),
-        (2.0 * wlf(TEMPERATURES), 0.0),
-        (vr.WLF(C1=8.86 * 101.6 / 201.6, C2=201.6, T0=100.0), 0.0),
+    for shift, asked, meant in (
+        (vr.WLF(C1=8.86, C2=101.6, T0=0.0), None, 0.0),
+        # the same moved to -60
+        (vr.WLF(C1=8.86 * 101.6 / 41.6, C2=41.6, T0=-60.0), None, 0.0),
+        (lambda T: 7.0 * wlf(T), -30.0, -30.0),
+        (3.0 * wlf(TEMPERATURES), None, 0.0),
+        (wlf(TEMPERATURES) / wlf(20.0), None, 20.0),
     ):
-        fit = vr.fit_prony(*curves, temperature=TEMPERATURES, shift=shift)
-        assert fit.shifts.reference == reference
-        assert np.isnan(fit.shifts.mismatch).all() == (shift is not None)
-        assert close(fit.shifts(reference), 1.0, tol.DMA_SHIFTED_TIMES)
-    assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
+        options = {"reference": asked, "shift": shift, "misfit": 1e-6}
+        fit = vr.fit_prony(*curves, TAU.size, temperature=TEMPERATURES, **options)
+        assert fit.material().temperature == fit.shifts.reference == meant
+        assert np.isnan(fit.shifts.mismatch).all()
+        truth = np.sort(TAU * wlf(meant))
+        assert close(np.sort(fit.prony.tau) * fit.T_ref, truth, tol.DMA_SHIFTED_TIMES)
+        assert close(fit.shifts.a_T, wlf(TEMPERATURES) / wlf(meant), tol.DMA_SHIFTED_TIMES)
+    options["shift"] = shift[::-1]
+    turned = [column[::-1] for column in curves]
+    assert (
+        vr.fit_prony(*turned, TAU.size, temperature=TEMPERATURES[::-1], **options).prony
+        == fit.prony
+    )
+    shift = vr.Arrhenius(energy=8e4, T0=-10.0)
+    assert vr.fit_prony(*curves, temperature=TEMPERATURES, shift=shift).shifts.reference == -10.0
 
 
-@pytest.mark.usefixtures("two_speeds")
 def test_temperatures_as_they_were_measured():
     """Within 0.5 K of a neighbour points are of one set, and the report says so; factors go by the
     sets.
@@ -192,7 +151,6 @@ def test_temperatures_as_they_were_measured():
         assert "were taken for" not in str(exact)
 
 
-@pytest.mark.usefixtures("two_speeds")
 def test_a_plateau_fixes_no_shift():
     """Two decades below the slowest mode nothing moves: a warning and the report say so; storage
     alone is offered.
@@ -246,7 +204,7 @@ def test_moduli_that_disagree_on_the_shift_and_factors_that_rise_are_named():
         vr.fit_prony(*isotherms(21, 0.0), temperature=TEMPERATURES, shift=factors, misfit=1.0)
 
 
-@pytest.mark.parametrize("decades", [2.4, 2.59, 3.0, 3.5])
+@pytest.mark.parametrize("decades", [2.4, 2.59, 3.5])
 def test_curves_too_far_apart_are_refused(decades):
     """Of 2.7 decades each: less than 15 % of overlap is not enough to find a shift, and is not
     taken for the best.
@@ -259,7 +217,6 @@ def test_curves_too_far_apart_are_refused(decades):
         vr.fit_prony([omega] * 2, *map(list, zip(*curves, strict=True)), temperature=[0.0, 20.0])
 
 
-@pytest.mark.usefixtures("two_speeds")
 def test_found_factors_are_a_shift_and_give_a_law():
     """Between the curves by interpolation, beyond them by WLF; of two or more by Arrhenius; what is
     none is refused.
@@ -284,7 +241,6 @@ def test_found_factors_are_a_shift_and_give_a_law():
 # --- shear, records, many points, relaxation ---
 
 
-@pytest.mark.usefixtures("two_speeds")
 def test_shear_is_shear():
     """E = 2 (1 + nu) G where the material is made, and the report, the material and the files say
     so.
@@ -300,7 +256,6 @@ def test_shear_is_shear():
     assert shear.to_xarray().attrs["modulus"] == shear.mode == "shear"
 
 
-@pytest.mark.usefixtures("two_speeds")
 def test_many_points_are_thinned():
     """20,000 points with noise give the series of exact data, in a time that does not grow with
     them.
@@ -323,7 +278,6 @@ def relaxing(t):
     return E + np.exp(-np.divide.outer(t, TAU)) @ STRENGTHS
 
 
-@pytest.mark.usefixtures("two_speeds")
 def test_relaxation_and_dynamic_data_give_one_material():
     """E(t) of ten modes and E', E'' of the same: the same moduli inside both bands; the band
     follows from 1/t.
@@ -350,7 +304,6 @@ def test_relaxation_and_dynamic_data_give_one_material():
 # --- files ---
 
 
-@pytest.mark.usefixtures("two_speeds")
 def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ():
     omega, storage, loss = vr.read_dma(PYVISCO)
     assert omega.size == 206
@@ -386,46 +339,3 @@ def test_units_are_asked_for(tmp_path):
     assert close(vr.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], 1e-15)
     file.write_text("f [kHz], E_stor [MPa], E_loss [kPa]\n1,2,3\n")
     assert close(vr.read_dma(file, units=("Hz", "Pa")), [[2e3 * np.pi], [2e6], [3e3]], 1e-15)
-
-
-@pytest.mark.parametrize("noise", [0.0, 0.01])
-@pytest.mark.parametrize("seed", range(3))
-def test_the_accuracy_of_M_bounds_its_error_and_contact_states_it(noise, seed):
-    """Rubbers of two modes, one of them at an end of the data: the misfit is met, and M is off by
-    up to 30 %.
-
-    Over 200 random rubbers 0.7 % of the errors are above it (pipeline/evidence/measure/fits.py).
-    """
-    rng = np.random.default_rng(seed)
-    omega = np.geomspace(1.0, 1e3, 25)
-    rubber = vr.Material(3e6, 0.49, vr.Prony(10.0 ** rng.uniform(-0.5, 1.0, 2), [5.0, 0.01]))
-    moduli = [
-        y * (1.0 + noise * rng.standard_normal(25))
-        for y in (rubber.storage(omega), rubber.loss(omega))
-    ]
-    fit = vr.fit_prony(omega, *moduli, misfit=max(0.01, 1.2 * noise))
-    true, found = (
-        vr.Cylinder(R=0.1, m=35.5, mu=0.5, load=1e3, material=each, base=vr.Material.rigid())
-        for each in (rubber, fit.material(0.49))
-    )
-    low, high = found.body_data.measured_speeds
-    V = np.geomspace(1.01 * low, 0.99 * high, 12)
-    state = found.contact(V, delta=0.0, fields=("M", "M_error"))
-    assert (np.abs(true.contact(V, delta=0.0, fields="M").M / state.M - 1.0) < state.M_error).all()
-    assert f"+-{state.M_error.max():.2g} (relative)" in found.validity(V).measured.sentence
-    with pytest.warns(vr.ModelWarning):
-        assert found.contact(2.0 * high, delta=0.0, fields="M_error").M_error == np.inf
-
-
-def test_what_was_measured_stays_with_the_material():
-    data = vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv")
-    fit = vr.fit_prony(*data, source="dma.csv")
-    errors = tuple(zip(fit.admissible.rate.tolist(), fit.admissible.error.tolist(), strict=True))
-    assert fit.material(0.5).measured == vr.Measured(
-        data[0].min(), data[0].max(), max(fit.misfit), "dma.csv", errors
-    )
-    with pytest.warns(vr.ModelWarning, match="was not reached"):
-        rubber = vr.fit_prony(*data, 1).material(0.5)
-    poor = vr.Cylinder(R=0.1, m=30.0, material=rubber, mu=0.5).validity(0.1).measured
-    assert not poor.holds
-    assert "25 points" in poor.sentence

@@ -21,7 +21,7 @@ preset = "paper-section-5"
 V0 = { distribution = "uniform", loc = 0.5, scale = 1.0 }
 omega0 = 0.5
 [run]
-n = 200
+n = 20
 t = [1e-4]
 rtol = 1e-6
 """

@@ -112,7 +112,7 @@ path = Path(sys.argv[2])
 for name, write in test_files.WRITERS.items():
     write(path)
     before = path.read_bytes()
-    for share in (0.0, 0.01, 0.5, 0.9, 0.99):
+    for share in (0.0, 0.5, 0.99):
         resource.setrlimit(resource.RLIMIT_FSIZE, (int(share * len(before)), resource.RLIM_INFINITY))
         try:
             write(path)
@@ -132,7 +132,7 @@ def test_a_full_disk(tmp_path):
     command = [sys.executable, "-c", FULL, str(Path(__file__).parent), str(path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == f"{path}: cannot be written (File too large)\n" * 15
+    assert done.stdout == f"{path}: cannot be written (File too large)\n" * 9
 
 
 def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path):
@@ -200,11 +200,11 @@ def test_damage_is_told(form, tmp_path):
     write(path)
     assert [each.name for each in tmp_path.iterdir()] == ["file.nc"]
     whole = path.read_bytes()
-    for position in np.random.default_rng(3).integers(0, 8 * (len(whole) - 200), 40):
+    for position in np.random.default_rng(3).integers(0, 8 * (len(whole) - 200), 20):
         damaged = bytearray(whole)
         damaged[position // 8] ^= 1 << position % 8
         told(bytes(damaged))
-    for share in (0.001, 0.1, 0.5, 0.9, 0.99):
+    for share in (0.001, 0.5, 0.99):
         told(whole[: int(share * len(whole))])
     for other in (b"", b"V,delta\n1,2\n", files.seal(b"[material]")):
         told(other)
@@ -213,6 +213,3 @@ def test_damage_is_told(form, tmp_path):
         if another == "material" != form or (another == "grid" and form == "material"):
             write_it(path)
             refused(lambda: read(path), str(path), error=vr.FileError)
-
-
-# --- every writer is one of these ---

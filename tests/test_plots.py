@@ -29,7 +29,7 @@ def test_a_run_without_values(tmp_path):
         )
     ):
         text = (
-            f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = '
+            f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 5\nt = '
             f"[0.0]\nsummaries = {wanted}\n"
         )
         run_ensemble(run_of(text, tmp_path), tmp_path / f"{n}.zarr", threads=1)

@@ -62,7 +62,6 @@ def test_speeds_against_extended_precision():
         assert abs(hump.M[0] * KAPPA / top - 1) < tol.STEADY
         for short in (0.4, 1e-5, 1e-9, 1e-12):
             force = float(top * (1 - mp.mpf(short)) / mp.mpf(KAPPA))
-
             load = mp.mpf(force) * mp.mpf(KAPPA)
 
             def missing(x, load=load):
@@ -86,6 +85,7 @@ def test_creep_has_its_traction():
         s = vr.steady(scene, V=0.3, torque=torque)
         state = vr.contact(scene, 0.3, delta=s.delta, fields=("Q", "beta"))
         assert close(s.Q, 0.2, tol.STEADY)
+        assert close(s.grip, 1.0 - part, tol.STEADY_GRIP / (1.0 - part))
         assert close(state.Q, s.Q, tol.STEADY)
         assert close(state.beta, s.beta, tol.STEADY / s.grip)
 
@@ -121,10 +121,8 @@ def test_all_equilibria_of_random_materials():
             for off in residuals(scene, s):
                 assert (np.abs(off) <= tol.STEADY_RESIDUAL / np.minimum(s.grip, 1.0)).all()
             c = vr.contact(scene, s.V, omega=s.omega)
-            assert not s.count or close(c.beta, s.beta, tol.STEADY_BETA, scale=1.0)
-            assert not s.count or close(
-                1.0 - np.abs(c.Q) / scene.mu, s.grip, tol.STEADY_BETA, scale=1.0
-            )
+            known = [c.beta, 1.0 - np.abs(c.Q) / scene.mu]
+            assert not s.count or close(known, [s.beta, s.grip], tol.STEADY_BETA, scale=1.0)
 
 
 def test_ten_humps():
@@ -135,10 +133,8 @@ def test_ten_humps():
     assert (np.abs(slopes * hump.V) <= tol.STEADY_FLAT * hump.M).all()
     for g in (0.5 * hump.M.min(), 0.5 * (hump.M[2] + hump.M[4]), 0.99 * hump.M[0]):
         s = vr.steady(scene, force=g)
-        assert (
-            s.count
-            == 2 * (np.diff(np.sign(np.concatenate([[0.0], hump.M, [0.0]]) - g)) > 0.0).sum()
-        )
+        ends = np.concatenate([[0.0], hump.M, [0.0]])
+        assert s.count == 2 * (np.diff(np.sign(ends - g)) > 0.0).sum()
         assert s.stable.tolist() == [True, False] * (s.count // 2)
         np.testing.assert_array_equal(s.M, [g] * s.count)
     at_top = vr.steady(scene, force=hump.M[0])
@@ -254,10 +250,10 @@ def brute_feedback(scene, force, torque, V):
 
 def test_feedback_on_omega_misses_none():
     rng = np.random.default_rng(3)
-    V = np.geomspace(1e-5, 1e6, 400001)
+    V = np.geomspace(1e-5, 1e6, 100001)
     several = 0
-    for n in range(24):
-        scene = (SCENE, *(series_scene(material, mu=0.02) for material in (TWO, UNLIKE)))[n % 3]
+    for n in range(15):
+        scene = (SCENE, series_scene(TWO, mu=0.02), series_scene(UNLIKE, mu=0.02))[n % 3]
         size = vr.resistance_extrema(scene).M[0]
         gains = rng.uniform(-1.0, 1.0, 4) * 10.0 ** rng.uniform(-2.0, 0.0)
         force = vr.Feedback(rng.uniform(-1.5, 1.5) * size, V=gains[0], omega=gains[1])
@@ -271,49 +267,28 @@ def test_feedback_on_omega_misses_none():
     assert several > 2
 
 
-def test_feedback_on_omega_of_covers_misses_none():
-    """Q by the combination of both balances without omega, bisected at each speed; changes of sign
+@pytest.mark.parametrize(("on", "coupled"), [("base", False), ("cylinder", False), ("base", None)])
+def test_feedback_on_omega_of_covers_misses_none(on, coupled):
+    """By the fast law and by a table, with both loads, one load or the other dependent on omega:
+    all steady states under random loads balance, and none with a stick zone is missed between the
+    speeds x or -x.
+
+    Q by the combination of both balances without omega, bisected at each speed; changes of sign
     of what is left of the larger gain.
     """
     rng = np.random.default_rng(3)
-    x = np.geomspace(1e-7, 1e5, 3001)
-    for n, on in enumerate(("base", "cylinder") * 2):
-        scene = series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0, on=on), mu=0.2)
-        gains = rng.uniform(-0.5, 0.5, 4) * (1.0, n > 1, 1.0, 1.0)
-        check_feedback_of_cover(scene, rng, gains, x)
-    refuse_gains_that_cancel(scene)
-
-
-def test_feedback_on_omega_of_a_table_misses_none():
-    """As above, with both loads, one load or the other dependent on omega."""
-    rng = np.random.default_rng(4)
     x = np.geomspace(1e-6, 1e4, 1001)
-    scene = series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0, on="base"), mu=0.2).replace(
-        coupled=None
-    )
-    for n in range(4):
+    scene = series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0, on=on)).replace(coupled=coupled)
+    for n in range(3):
         gains = rng.uniform(-0.5, 0.5, 4) * (1.0, n != 1, 1.0, n != 2)
-        if gains[1] * gains[3] < 0.0:
-            gains[1] *= -1.0
-        check_feedback_of_cover(scene, rng, gains, x)
-    refuse_gains_that_cancel(scene)
-
-
-def check_feedback_of_cover(scene, rng, gains, x):
-    """Under random loads with these gains all steady states balance, and none with a stick zone is
-    missed between the speeds x or -x.
-    """
-    force = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[0], omega=gains[1])
-    torque = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[2], omega=gains[3])
-    s = vr.steady(scene, force=force, torque=torque)
-    for off in residuals(scene, s):
-        assert (np.abs(off) <= tol.STEADY_SCAN * (1.0 + np.abs(s.omega))).all()
-    assert (s.loss.slip >= 0.0).all()
-    sticks = (s.beta > 0.0) & (np.abs(s.V) > x[0])
-    assert sticks.sum() == sum(brute_of_cover(scene, force, torque, V) for V in (x, -x)), gains
-
-
-def refuse_gains_that_cancel(scene):
+        force = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[0], omega=gains[1])
+        torque = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[2], omega=gains[3])
+        s = vr.steady(scene, force=force, torque=torque)
+        for off in residuals(scene, s):
+            assert (np.abs(off) <= tol.STEADY_SCAN * (1.0 + np.abs(s.omega))).all()
+        assert (s.loss.slip >= 0.0).all()
+        sticks = (s.beta > 0.0) & (np.abs(s.V) > x[0])
+        assert sticks.sum() == sum(brute_of_cover(scene, force, torque, V) for V in (x, -x)), gains
     with pytest.raises(vr.ParameterError, match="nearly cancel"):
         vr.steady(scene, force=vr.Feedback(0.01, omega=0.1), torque=vr.Feedback(0.0, omega=-0.1))
 
@@ -350,17 +325,6 @@ def test_opposite_gains_on_omega():
     assert (np.sort(s.grip)[:3] == 0.0).all()
     for off in residuals(SCENE, s):
         assert (np.abs(off) <= tol.STEADY_SCAN).all()
-
-
-def test_edge_of_grip():
-    """|torque - force| < 2 mu for like bodies; there the stick zone closes."""
-    for short in (1e-3, 1e-9):
-        s = vr.steady(SCENE, force=0.025 - MU * (1.0 - short), torque=0.025 + MU * (1.0 - short))
-        assert close(s.grip, short, tol.STEADY_GRIP / short)
-        star = vr.contact(SCENE, s.V, delta=0.0, fields="delta_star").delta_star
-        assert (s.delta < star).all()
-        assert close(s.delta, star, 2.0 * math.sqrt(short))
-    assert vr.steady(SCENE, force=0.025 - 1.001 * MU, torque=0.025 + 1.001 * MU).count == 0
 
 
 # --- losses ---

@@ -92,11 +92,6 @@ CARTER = 1e-15
 #: Values at kappa V = 1e-12 and V = 1e14 from their limits: the limits' own error, kappa V and
 #: alpha^2/V; measured 1e-12 and below.
 SPEED_LIMIT = 1e-10
-#: beta at s = 1 - 1e-12: beta = (1 - s) F(zeta)/(zeta F'(0)) to leading order, and epsilon < 7 for
-#: alpha <= 1e4.
-CONTINUITY_BETA = 1e-10
-#: (mu - Q)/mu at s = 1 - 1e-12: of the order of (1 - s)^2, so rounding alone.
-CONTINUITY_Q = 1e-15
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 
@@ -107,11 +102,9 @@ AXIS_LAW = 1e-14
 AXIS_UNSTEADY = 2e-14
 
 # --- an alpha or a material each (test_contact.py) ---
-# An alpha each, by the axis of alpha: lam, delta_star, M and Q, and beta times its condition;
-# epsilon.  As asked of the axis, and of epsilon what the row of one alpha has; 400 states from 1 to
-# 2^20 have 2.5e-15 at most.
+# An alpha each, by the axis of alpha: Q and its slope by delta over the condition of beta.  As
+# asked of the axis; 400 states from 1 to 2^20 have 2.5e-15 at most.
 EACH_ALPHA = 1e-14
-EACH_SHIFT = 2e-14
 #: dQ_dV of an alpha each over mu/V: terms of the axis that are left out; measured 1.6e-14.
 EACH_SLOPE_OVER_V = 2e-14
 #: A material each, by the grid of z, against its own table: values, as asked, which 300 random
@@ -372,9 +365,6 @@ DMA_EXACT = 1e-6
 DMA_MISFIT = 0.01
 #: alpha and E of that rubber from 60 points; measured 0.33 % (six seeds).
 DMA_ALPHA = 0.01
-#: M over nine decades of speed at the same load; measured 0.52 %, between the fit and wider grids
-#: 1.1 %.
-DMA_MOMENT = 0.02
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
 #: Files written with seven digits: half a unit of the last one, of loss over storage twice.
@@ -665,14 +655,10 @@ BALANCE_OF_STEADY = 1e-9
 COVER_MOTION = 1e-10
 
 # --- covers: limits, sides and motions (test_covers.py) ---
-#: Bodies of a nip that change sides: sums in another order.
-COVER_MIRROR = 1e-12
 #: M V at 1e9 and 2e9 times the fastest rate.
 COVER_FAST = 1e-6
 #: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as
 #: large as that.
 COVER_NU = 1e-5
-#: Differences of V and omega over time: their second order.
-COVER_RATES = 1e-6
 #: Forces at equilibria, over P: roundings of Q near its limit.
 COVER_STEADY = 1e-13
