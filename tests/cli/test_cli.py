@@ -312,6 +312,7 @@ REFUSED = {
     "stress PAPER --V 1,2 --delta 0": "--V: '1,2' must be a number",
     "material fit rubber.toml --column storage": "argument --column: 'storage' must be "
     "NAME=HEADING, for example storage=Module 1",
+    "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=HEADING",
     "material fit dma.csv --column temperature=E_loss": "column 'E_loss [MPa]': unit 'MPa' is "
     "not a unit of temperature: give units={'temperature': ...}",
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",

@@ -13,7 +13,7 @@ from run_files import run_of
 
 import viscoroll as vr
 from viscoroll import cli
-from viscoroll.fmu.fmu_build import MODELS
+from viscoroll.fmu import MODELS
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"

@@ -9,6 +9,7 @@ import json
 import os
 from argparse import ArgumentTypeError, Namespace
 from collections.abc import Callable
+from functools import partial
 from operator import methodcaller
 from pathlib import Path
 from typing import Any
@@ -39,7 +40,7 @@ def command(
     """Return a decorator that adds a function to :data:`COMMANDS`, so that the program has it as a
     command.
 
-    words: words of the command, as "tables law", a key of :data:`.program.HELP`.
+    words: words of the command, as "tables law"; its help is the docstring of its function.
     options: options of the command, in the order of its help, each as :func:`option` or
         :func:`arguments` returns it; a list of them is a group of which one at most may be given.
     Returns a decorator that takes the function of the command and returns it unchanged.
@@ -52,16 +53,10 @@ def command(
     return add
 
 
-def option(*names: str, **settings: Any) -> Option:
-    """Return an argument of a command, in the form of :func:`command`.
-
-    names: positional name, or names of the option with dashes, as in
-    ``ArgumentParser.add_argument``.
-    settings: keywords of ``ArgumentParser.add_argument``, as type and help.
-    Returns an :class:`Option`, a function that takes a parser of argparse, or a group of one, and
-    adds the argument.
-    """
-    return methodcaller("add_argument", *names, **settings)
+#: option(*names, **settings) -> an argument of a command, in the form of :func:`command`: a
+#: function that takes a parser of argparse, or a group of one, and adds the argument.  Names and
+#: settings are those of ``ArgumentParser.add_argument``.
+option: Callable[..., Option] = partial(methodcaller, "add_argument")
 
 
 def numbers(text: str) -> Any:

@@ -29,18 +29,23 @@ from .arguments import FIGURES, FILE, SCENE, command, numbers, option, output, r
     ),
 )
 def show(arguments: Namespace) -> None:
-    """Print the moduli, relaxation modes and creep modes of each material of a file.
+    """Print moduli, relaxation modes and creep modes of the materials of a file.
+
+    The values are those at the temperature that the file states.
+
+    example:
+      viscoroll samples
+      viscoroll material show samples/rubber.toml
+
+    arguments: parsed command line with file, path of a TOML file with [material] or [base], or of
+        the netCDF (.nc) of a material.
+    Raises FileError for a file that cannot be read, that has no material, or with a value that is
+    not allowed.
 
     Moduli are in Pa, times in s.  Relaxation modes are printed as strengths E_i, divided by the
     long-time modulus, and times tau_i, creep modes as strengths J_i, divided by the long-time
     compliance, and times T_i; above them stands T_mean = sum J_i T_i, with M/P = V T_mean at low
     speeds.  An elastic material has none of these.
-
-    arguments: parsed command line with file, path of a TOML file with [material] or [base], or of
-        the netCDF (.nc) of a material.
-    Returns None.
-    Raises FileError for a file that cannot be read, that has no material, or with a value that is
-    not allowed.
     """
     import pandas as pd
 
@@ -80,11 +85,22 @@ def _named_heading(text: str) -> tuple[str, str]:
     return name, heading
 
 
+def _units(text: str) -> Any:
+    """Convert the argument of --units to the units of :func:`viscoroll.read_dma`.
+
+    text: "F,M", which becomes a tuple, or "NAME=UNIT,...", a dict name -> unit.
+    Raises ArgumentTypeError for a part without "=" behind a first one with it.
+    """
+    parts = text.split(",")
+    return dict(map(_named_heading, parts)) if "=" in parts[0] else tuple(parts)
+
+
 @command(
     "material fit",
     option("data", metavar="DATA", help="text file with columns"),
     option(
         "--units",
+        type=_units,
         metavar="F,M",
         help="units of frequency and moduli, if the file states none, for "
         "example Hz,MPa; or in place of those of the file NAME=UNIT,..., for example storage=MPa",
@@ -148,44 +164,38 @@ def _named_heading(text: str) -> tuple[str, str]:
     output(".toml", ".nc", required=False),
 )
 def fit(arguments: Namespace) -> int:
-    """Fit a Prony series to a DMA, print the fit, and write its material if a path is given.
+    """Fit a material to DMA data.
 
-    A fit is faulty if it misses the required misfit, or if its misfit is above 5 %; standard error
-    then says so, with a path and without.
+    The command fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their
+    headings, and prints how well the data determine it.  With -o it writes a [material] of a TOML file, or netCDF.
 
-    arguments: parsed command line with
-        data, path of the text file;
-        decimal, "." or ",", or None: as the numbers have it;
-        encoding, name of an encoding, or None: by the first bytes of the file;
-        units, "F,M", units of frequency and of moduli, or "NAME=UNIT,...", or None;
-        column, a list of (quantity, heading), perhaps empty;
-        mode, "tension" or "shear" in place of what the headings say, or None: as they say, else
-        tension; temperature of all points, degrees Celsius, in place of those of the file, or None;
-        reference, temperature of the master curve, degrees Celsius, or None;
-        wlf, "C1,C2,T0", or None: shifts from the overlap of the curves;
-        on, "both" (if not given) or "storage", the moduli whose overlap gives the shifts;
-        modes, largest number of modes, or None: as few as the misfit needs;
-        misfit, required root mean square of relative errors, dimensionless, 0.01 if not given;
-        nu, Poisson's ratio, in (-1, 0.5], 0.49 if not given;
-        name of the material, perhaps "";
-        output, path that is written, .toml or .nc, or None: nothing is written;
-        force, whether a faulty fit is written too, with a mark in its source.
+    The exit code is 1 and no file is written if the misfit exceeds --misfit, or if it exceeds 5 % with any --misfit.
+    With --force the exit code is 0 and the file is written; the source of the data in it states the misfit.
+
+    example:
+      viscoroll samples
+      viscoroll material fit samples/dma.csv --nu 0.49 -o rubber.toml
+
+    arguments: parsed command line with the options above, None where they are not given and have no
+        default; units as :func:`_units` returns them; column, a list of (quantity, heading),
+        perhaps empty; wlf, "C1,C2,T0"; output, path that is written, .toml or .nc, or None: nothing
+        is written; force, whether a faulty fit is written too, with a mark in its source.
     Returns 1, and writes nothing, if the fit is faulty and force is not given; else 0.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
-    """
+
+    A fit is faulty if it misses the required misfit, or if its misfit is above 5 %; standard error
+    then says so, with a path and without.
+    """  # noqa: E501
     from ..contact_mechanics import MISFIT_LIMIT
     from ..materials import material_as_toml
 
-    # NAME=UNIT,... becomes a dict, F,M a pair; without the option neither is used
-    parts = (arguments.units or "").split(",")
-    units: Any = dict(_named_heading(part) for part in parts) if "=" in parts[0] else tuple(parts)
     record = vr.read_dma(
         arguments.data,
         columns=dict(arguments.column),
         decimal=arguments.decimal,
         encoding=arguments.encoding,
-        units=units if arguments.units else None,
+        units=arguments.units,
     )
     if arguments.mode is not None:
         record = replace(record, mode=arguments.mode)
@@ -209,9 +219,9 @@ def fit(arguments: Namespace) -> int:
         material = replace(
             material, measured=replace(measured, source=f"{measured.source}; forced: {fault}")
         )
-    if path is not None and path.suffix.lower() == ".nc":
+    if path and path.suffix.lower() == ".nc":
         material.to_netcdf(path)
-    elif path is not None:
+    elif path:
         write_text(path, material_as_toml(material))
     return 0
 
@@ -223,7 +233,7 @@ def _wlf(text: str) -> vr.WLF:
     Raises ParameterError for another form, and for values that :class:`viscoroll.WLF` refuses.
     """
     try:
-        C1, C2, T0 = (float(part) for part in text.split(","))
+        C1, C2, T0 = map(float, text.split(","))
     except ValueError:
         raise vr.ParameterError(
             "--wlf", repr(text), "C1,C2,T0: three numbers, T0 in degrees Celsius"
@@ -250,21 +260,26 @@ def _wlf(text: str) -> vr.WLF:
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),
 )
 def identify(arguments: Namespace) -> None:
-    """Fit the unknowns of a cylinder to measurements, print the report, and write report and figure
-    if paths are given.
+    """Identify friction, modulus, relaxation times and moduli, and bearing friction, from measurements.
 
-    arguments: parsed command line with
-        file, path of a TOML file of measurements;
-        starts, number of searches, >= 1, 8 if not given;
-        seed of their random points, >= 0, 0 if not given;
-        robust, whether outliers count less, False if not given;
-        output, path of the report that is written, .txt (the text printed), .json or .nc, or None;
-        plot, path of the figure that is written, .png, .pdf or .svg, or None.
+    The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states
+    which of them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
+      [unknown]  NAME = [LOW, HIGH]: bounds; [cylinder] has the initial guess
+      [prior]    NAME = [VALUE, SD]
+      [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
+                 Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m
+
+    example:
+      viscoroll samples
+      viscoroll identify samples/measured.toml --plot fit.png
+
+    arguments: parsed command line with the options above; output, path of the report that is
+        written, .txt (the text printed), .json or .nc, or None; plot, path of the figure, or None.
     Returns None, exit code 0, also where the report warns of the model or the data.  A progress bar
     is drawn on standard error if that is a terminal.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
-    """
+    """  # noqa: E501
     from ..measurements.identification_report import as_json
     from ..measurements.identify import read_measurements
 
@@ -274,16 +289,13 @@ def identify(arguments: Namespace) -> None:
     )
     print(result)
     path = arguments.output
-    suffix = arguments.output and arguments.output.suffix.lower()  # None without a path
+    suffix = path and path.suffix.lower()  # None without a path
     if suffix == ".nc":
         write_dataset(result.to_xarray(), path)
-    elif path is not None:
-        text = (
-            json.dumps(as_json(result), indent=1, allow_nan=False)
-            if suffix == ".json"
-            else str(result)
-        )
-        write_text(path, f"{text}\n")
+    elif suffix == ".json":
+        write_text(path, json.dumps(as_json(result), indent=1, allow_nan=False) + "\n")
+    elif path:
+        write_text(path, f"{result}\n")
     if arguments.plot is not None:
         result.plot(arguments.plot)
 
@@ -308,6 +320,16 @@ def _low_high(text: str) -> tuple[float, ...]:
         return tuple(map(float, text.split(":")))
     except ValueError:
         raise ArgumentTypeError(f"{text!r} must be LOW:HIGH, for example 1:4096") from None
+
+
+def _export(table: Any, path: Path) -> None:
+    """Write a law or a grid in the format of the suffix of a path, and print the size of the file.
+
+    table: dataset of a law or a grid.
+    path: path of the file.
+    """
+    vr.tables.export(table, path)
+    _print_size(path)
 
 
 def _print_size(path: Path) -> None:
@@ -337,23 +359,29 @@ def _print_size(path: Path) -> None:
     output(*_LAW),
 )
 def law(arguments: Namespace) -> None:
-    """Write the law of a material, pair or cover, or of every alpha of a range, and print the size
-    of the file.
+    """Write the contact law of a material, pair, cover or range of alpha to a file.
+
+    .nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
+    or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
+    every alpha of a range.  Of a cover it is the fast law (coupled = false); viscoroll tables grid writes the coupled one.
+
+    example:
+      viscoroll samples
+      viscoroll tables law samples/rubber.toml -o rubber.h
 
     arguments: parsed command line with
         file, path of a TOML file or of the netCDF of a material, name of a preset, or None;
         alpha, (low, high) of alpha, dimensionless, for the law of every alpha between, or None;
-        output, path that is written; its suffix is the format: .nc, .cdf, .h or .json.
+        output, path that is written; its suffix is the format.
     Exactly one of file and alpha must be given.
     Raises ParameterError for both or none of file and alpha, a range out of bounds, a suffix in
     capital letters, and a name of a .h file that is no identifier of C; FileError for a file that
     cannot be read or written, and for .h of a range of alpha.
-    """
+    """  # noqa: E501
     from ..presets import read_law_source
 
     material = None if arguments.file is None else read_law_source(arguments.file)
-    vr.tables.export(vr.tables.law(material, alpha=arguments.alpha), arguments.output)
-    _print_size(arguments.output)
+    _export(vr.tables.law(material, alpha=arguments.alpha), arguments.output)
 
 
 @command(
@@ -381,24 +409,25 @@ def law(arguments: Namespace) -> None:
     output(*_GRID),
 )
 def build(arguments: Namespace) -> None:
-    """Compute a grid of the contact over speed and creepage, write it, and print the size of the
-    file.
+    """Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
+
+    The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
+    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.
+
+    example:
+      viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        V, nodes of the axis of speed, > 0, a number or (n,), in m/s of a cylinder, dimensionless of
-        a scene; delta, nodes of the axis of creepage, a number or (m,), dimensionless;
-        alpha, nodes of a third axis, a number or (k,), dimensionless, of a scene only, or None: two
-        axes; method, "table" (if not given), the law of the scene, or "direct", roots of the
-        equations of the paper; output, path that is written; its suffix is the format: .nc, .cdf,
-        .csv, .txt or .mat.
+        V, delta, alpha, nodes of the axes, a number or a vector each, alpha perhaps None;
+        method, "table" or "direct";
+        output, path that is written; its suffix is the format.
     Raises ParameterError for nodes or a method that are not allowed, for .txt of a grid over
     several alphas, and for a suffix in capital letters; FileError for a file that cannot be read or
     written.
-    """
+    """  # noqa: E501
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
-    vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
-    _print_size(arguments.output)
+    _export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
 
 
 @command(
@@ -420,32 +449,37 @@ def build(arguments: Namespace) -> None:
     output(".nc", ".cdf", ".h"),
 )
 def grid(arguments: Namespace) -> None:
-    """Compute the coupled solution of a roller over speed and creep as a law, write it, and print
-    the size of the file.
+    """Write the coupled solution of a roller over speed and creep as a law, for one mu and one thickness over l0.
 
-    arguments: parsed command line with
-        scene, path of a TOML file or name of a preset;
-        method, "coupled";
-        nodes, [over speed, over creep], or None;
-        output, path that is written; its suffix is the format: .nc, .cdf or .h.
+    Pressure and shear are solved together.  The file is loaded by vr.load_law, as the material of the roller, and states
+    the largest errors beside its nodes.  Formats: .nc, .cdf (without HDF5) and .h (a header of C).
+
+    example:
+      viscoroll samples
+      viscoroll tables grid samples/rubber.toml --method coupled -o rubber.nc
+
+    arguments: parsed command line with scene, path of a TOML file or name of a preset; nodes, [over
+        speed, over creep], or None; output, path that is written; its suffix is the format.
     Raises ParameterError for numbers of nodes, FileError for a file that cannot be read or written.
-    """
-    nodes = None if arguments.nodes is None else tuple(arguments.nodes)
+    """  # noqa: E501
+    nodes = arguments.nodes and tuple(arguments.nodes)
     roller = roller_of_argument(arguments.scene)
     table = vr.tables.build(roller, method="coupled", nodes=nodes, progress=sys.stderr.isatty())
-    vr.tables.export(table, arguments.output)
-    _print_size(arguments.output)
+    _export(table, arguments.output)
 
 
 @command("tables info", FILE)
 def info(arguments: Namespace) -> None:
-    """Print the summary of a table file on standard output: its functions or axes and fields, their
-    errors, its origin.
+    """Print the contents of a table file: functions or grid, stated errors, material and provenance.
+
+    example:
+      viscoroll samples
+      viscoroll tables law samples/rubber.toml -o rubber.nc
+      viscoroll tables info rubber.nc
 
     arguments: parsed command line with file, path of a law or a grid.
-    Returns None; the lines are those of :func:`viscoroll.tables.info`.
     Raises FileError for a file that cannot be read or is no table.
-    """
+    """  # noqa: E501
     print(vr.tables.info(arguments.file))
 
 
@@ -455,20 +489,24 @@ def info(arguments: Namespace) -> None:
     option("-n", type=int, default=10_000, help="number of random speeds (default: 10000)"),
 )
 def validate(arguments: Namespace) -> int:
-    """Check a table file at random points and print the differences.
+    """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
+
+    The exit code is 1 if an error is larger than twice the one that the file states, or than half of the largest value
+    of a field of a grid.
+
+    example:
+      viscoroll samples
+      viscoroll tables law samples/rubber.toml -o rubber.nc
+      viscoroll tables validate rubber.nc
+
+    arguments: parsed command line with file, path of a law or a grid; n, number of random points.
+    Returns that code, True for 1; rounding is added to what the file states.
+    Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a
+    grid of a material or a cylinder.
 
     A law is compared with the formulas of its relaxation modes, that of a cover with solves of the
     contact, and a grid with the law.  The points are the same in every call: their seed is 0.
-
-    arguments: parsed command line with
-        file, path of a law or a grid;
-        n, number of random points, a whole number >= 1, 10000 if not given.
-    Returns True, exit code 1, if an error is larger than its check allows (twice the error that the
-    file states, and rounding; of a grid at most half of the largest value of the field), else
-    False, exit code 0.
-    Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a
-    grid of a material or a cylinder.
-    """
+    """  # noqa: E501
     from ..tables.law_dataset import Report, check_table
 
     about = {"file": arguments.file, "points": arguments.n}
@@ -481,17 +519,22 @@ def validate(arguments: Namespace) -> int:
 # a dict, since both lists have .nc and .cdf
 @command("export", FILE, output(*dict.fromkeys(_LAW + _GRID)))
 def export(arguments: Namespace) -> None:
-    """Write the results of a run, or a table, in another format, and print the size of the new
-    file.
+    """Convert the results of a run, or a table, to another file format.
 
-    arguments: parsed command line with
-        file, path of a folder with the results of a run, or of a law or a grid;
-        output, path that is written; its suffix is the format: .nc of results, .nc, .cdf, .h or
-        .json of a law, .nc, .cdf, .csv, .txt or .mat of a grid.
+    A results store (STORE.zarr) becomes .nc with summaries and stored motions.  A law becomes .nc, .cdf, .h or .json.
+    A grid becomes .nc, .cdf, .csv, .txt or .mat.
+
+    example:
+      viscoroll samples
+      viscoroll tables law samples/rubber.toml -o rubber.nc
+      viscoroll export rubber.nc -o rubber.h
+
+    arguments: parsed command line with file, path of a folder with the results of a run, or of a
+        law or a grid; output, path that is written; its suffix is the format.
     Raises ParameterError for a suffix that the content does not have, and as :func:`law` and
     :func:`build` for .h and .txt; FileError for a file that cannot be read or written, is damaged,
     or for results that are not finished; MissingDependencyError for results without zarr.
-    """
+    """  # noqa: E501
     path = arguments.output
     if not Path(arguments.file).is_dir():
         vr.tables.export(vr.tables.load(arguments.file), path)
@@ -516,20 +559,28 @@ def export(arguments: Namespace) -> None:
     output(".fmu"),
 )
 def fmu(arguments: Namespace) -> None:
-    """Build an FMU of a cylinder or a law, and print the size of the file.
+    """Build an FMU of a cylinder, for Modelica tools and others.
 
-    The numbers of a cylinder become the start values of the FMU.  Of a dimensionless scene the FMU
-    has the law alone, and a ModelWarning says that its other numbers are not used.
+    The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
+    Of a cover it is the fast law, as with coupled = false.
+    Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
+    ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
+    Both provide exact directional derivatives.
+
+    example:
+      viscoroll samples
+      viscoroll fmu samples/rubber.toml -o roller.fmu
 
     arguments: parsed command line with
         file, path of a TOML file with a cylinder, a material or a scene, or of the netCDF (.nc) of
-            a law or a material, or name of a preset;
-        model, "Roller" (if not given) or "ContactElement";
-        fmi, version of the standard, 2 (if not given) or 3;
-        output, path of the FMU that is written.
+        a law or a material, or name of a preset;
+        model, fmi, output.
     Raises ParameterError for another model or version, FileError for a file that cannot be read or
     written, and MissingDependencyError without fmpy or a C compiler.
-    """
+
+    The numbers of a cylinder become the start values of the FMU.  Of a dimensionless scene the FMU
+    has the law alone, and a ModelWarning says that its other numbers are not used.
+    """  # noqa: E501
     from ..materials import is_law
     from ..presets import SCENES, read_law_source, read_sections
 

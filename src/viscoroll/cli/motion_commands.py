@@ -64,15 +64,20 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 
 @command("contact", *_speeds(numbers), TABLE)
 def contact(arguments: Namespace) -> None:
-    """Print or write the state of the contact for all pairs of speed and creepage (or angular
-    velocity).
+    """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
+
+    The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT,
+    LOW:HIGH:COUNT:log, or several of these, separated by commas.
+
+    example:
+      viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
         V, speeds, a number or (n,), in m/s of a cylinder, dimensionless of a scene;
         delta, creepages, a number or (m,), dimensionless, or None;
-        omega, angular velocities, a number or (m,), in rad/s of a cylinder, dimensionless of a
-        scene, or None; output, path of a .txt, .csv or .nc file that is written, or None: standard
+        omega, angular velocities, a number or (m,), in rad/s or dimensionless, or None;
+        output, path of a .txt, .csv or .nc file that is written, or None: standard
         output;
         format of standard output, "text", "csv" or "json".
     Exactly one of delta and omega must be given.  A vector of speeds and one of creepages (or
@@ -83,7 +88,7 @@ def contact(arguments: Namespace) -> None:
     contact that the model does not describe gives a ModelWarning.
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed;
     FileError for a file that cannot be read or written.
-    """
+    """  # noqa: E501
     import numpy as np
 
     V = arguments.V
@@ -100,19 +105,17 @@ def contact(arguments: Namespace) -> None:
 
 @command("stress", *_speeds(float), TABLE)
 def stress(arguments: Namespace) -> None:
-    """Print or write pressure and shear stress at 101 positions from one end of the contact to the
-    other.
+    """Compute pressure and shear stress along the contact.
 
-    The positions are equidistant and ascend in x, so that they go from the trailing to the leading
-    end for V >= 0, and from the leading to the trailing end for V < 0.
+    The stresses are given at 101 points of the contact, for one V and one delta (or omega).
+
+    example:
+      viscoroll stress paper-section-5 --V 0.5 --delta -0.01
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        V, speed, a number, in m/s of a cylinder, dimensionless of a scene;
-        delta, creepage, a number, dimensionless, or None;
-        omega, angular velocity, a number, in rad/s of a cylinder, dimensionless of a scene, or
-        None; output, path of a .txt, .csv or .nc file that is written, or None: standard output;
-        format of standard output, "text", "csv" or "json".
+        V, delta, omega, one number each, delta or omega None, as in ``contact``;
+        output and format as in ``contact``.
     Exactly one of delta and omega must be given.
     Returns None; each position has x, V, delta or omega, the pressure p and the shear stress tau
     (of a cover p alone), in SI units of a cylinder, as in :func:`viscoroll.stress`; a .nc file has
@@ -120,6 +123,9 @@ def stress(arguments: Namespace) -> None:
     gives a ModelWarning.
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed;
     FileError for a file that cannot be read or written.
+
+    The positions are equidistant and ascend in x, so that they go from the trailing to the leading
+    end for V >= 0, and from the leading to the trailing end for V < 0.
     """
     import numpy as np
 
@@ -147,26 +153,29 @@ def stress(arguments: Namespace) -> None:
     TABLE,
 )
 def roll(arguments: Namespace) -> None:
-    """Integrate a motion without a drive, and print or write it.
+    """Integrate one free motion from given initial speeds.
 
-    The summary of the motion, which says how it ended, is the heading of a text; where a file is
-    written it is printed on standard output too.
+    The motion obeys Eq. (22), and may change between full slip and partial slip.
+    For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
+
+    example:
+      viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        V0, speed of the axis at the start, a number, in m/s of a cylinder, dimensionless of a
-        scene; omega0, angular velocity at the start, a number, in rad/s of a cylinder,
-        dimensionless of a scene; t, output times, a number or (n,), in s of a cylinder,
-        dimensionless of a scene;
-        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
-        format of standard output, "text", "csv" or "json".
-    Returns None.  The output has a row for each time with t, V, omega, x, angle, delta and the
+        V0, omega0, speeds at the start, numbers, in m/s and rad/s of a cylinder; t, output times,
+        a number or (n,), in s of a cylinder; all are dimensionless of a scene;
+        output and format as in ``contact``.
+    The output has a row for each time with t, V, omega, x, angle, delta and the
     regime in words; times that the motion did not reach have NaN, and the regime "not_reached".  A
     .nc file has the dataset of :meth:`viscoroll.Motion.to_xarray`, with the regime as a code.  A
     motion that the model does not describe gives a ModelWarning.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
-    """
+
+    The summary of the motion, which says how it ended, is the heading of a text; where a file is
+    written it is printed too.
+    """  # noqa: E501
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
         motion = roller_of_argument(arguments.scene).roll(
@@ -175,6 +184,22 @@ def roll(arguments: Namespace) -> None:
     show(arguments, motion, str(motion))
     if arguments.output is not None:
         print(motion)
+
+
+def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
+    """Return the numbers of the options that are given, as vectors, which have a list of reasons.
+
+    arguments: parsed command line.
+    names: names of options; their values are numbers, (n,), or None.
+    Returns a dict name -> (n,); a slope is as it is given, since a cover takes one number.
+    """
+    import numpy as np
+
+    return {
+        name: value if name == "slope" else np.atleast_1d(value)
+        for name in names
+        if (value := getattr(arguments, name)) is not None
+    }
 
 
 @command(
@@ -195,36 +220,32 @@ def roll(arguments: Namespace) -> None:
     TABLE,
 )
 def steady(arguments: Namespace) -> None:
-    """Print or write the equilibria of rolling under each load, and why a load has none.
+    """Find the steady speeds under force, torque or slope.
 
-    The reasons stand above the table, of at most three loads, and then the number of the others;
-    where the output is a file, csv or json they are warnings (ModelWarning), one for each.
+    Each equilibrium of each load is a row.  If a load has no equilibrium, the reason is printed.
+    Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
+
+    example:
+      viscoroll steady paper-section-5-rounded --slope 0:0.1:6
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        force on the axis along V, in N/m of a cylinder, dimensionless of a scene;
-        torque along omega, in N m/m of a cylinder, dimensionless of a scene;
-        slope, angle in rad, positive if +V points downhill;
-        V, prescribed speed, in m/s of a cylinder, dimensionless of a scene;
-        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
-        format of standard output, "text", "csv" or "json".
-    Each of force, torque, slope and V is a number, (n,) with one n for all vectors, or None where
-    it is not given: a force, torque or slope of 0, and a speed that is not prescribed.
+        force, torque, slope, V, a number or (n,) each, or None where it is not given: a force,
+        torque or slope of 0, and a speed that is not prescribed;
+        output and format as in ``contact``.
     Returns None.  The table has a row for each equilibrium of each load, with the quantities of
     :func:`viscoroll.steady`, and none for a load without an equilibrium; a .nc file has the dataset
     of :meth:`viscoroll.Steady.to_xarray`, with NaN in its place.  A contact that the model does not
     describe gives a ModelWarning.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
-    """
-    import numpy as np
 
-    loads = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
-    loads = {name: load for name, load in loads.items() if load is not None}
-    slope = {"slope": loads.pop("slope")} if "slope" in loads else {}  # a cover takes one number
-    loads = loads or {"force": 0.0}
-    # vectors give the reasons of a list of loads, also of a single one
-    loads = {name: np.atleast_1d(load) for name, load in loads.items()} | slope
+    The reasons stand above the table, of at most three loads, and then the number of the others;
+    where the output is a file, csv or json they are warnings (ModelWarning), one for each.
+    """  # noqa: E501
+    loads = _given(arguments, "force", "torque", "slope", "V")
+    if loads.keys() <= {"slope"}:
+        loads["force"] = [0.0]
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
@@ -255,24 +276,23 @@ def steady(arguments: Namespace) -> None:
     TABLE,
 )
 def heat(arguments: Namespace) -> None:
-    """Print or write the temperatures at which a cylinder runs, and why a state has none.
+    """Find the temperatures at which a cylinder runs.
+
+    Each equilibrium of loss and heat given off is a row; unstable ones lie between two stable ones.
+    The [material] needs wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
+
+    example:
+      viscoroll samples
+      viscoroll heat samples/rubber.toml --V 0.5:4:8 --ambient 20 --conductance 2.5
 
     arguments: parsed command line with scene, path of a TOML file with [cylinder] and a [material]
         that has a shift; V, ambient, conductance, force, torque, slope, numbers or (n,), or None;
         output and format as in ``steady``.
-    Returns None.  The table has a row for each equilibrium, with the fields of
-    :func:`viscoroll.temperature`.
+    The table has a row for each equilibrium, with the fields of :func:`viscoroll.temperature`.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
-    """
-    import numpy as np
-
-    names = ("V", "ambient", "conductance", "force", "torque", "slope")
-    given = {
-        name: value if name == "slope" else np.atleast_1d(value)  # a cover takes one number
-        for name in names
-        if (value := getattr(arguments, name)) is not None
-    }
+    """  # noqa: E501
+    given = _given(arguments, "V", "ambient", "conductance", "force", "torque", "slope")
     found = roller_of_argument(arguments.scene).temperature(**given)
     for n, reason in enumerate(found.reason[:_MOST_LINES]):
         if reason:
@@ -291,16 +311,20 @@ def heat(arguments: Namespace) -> None:
     ),
 )
 def validity(arguments: Namespace) -> None:
-    """Print which assumptions of the model hold, a line for each, on standard output.
+    """Check the assumptions of the model at one speed.
+
+    Each line has the name of an assumption, whether it holds (yes, no, or ? if data are missing), and the reason.
+
+    example:
+      viscoroll validity rubber-roller --V 5 --omega 4.9
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        V, speed of the axis, a number, in m/s of a cylinder, dimensionless of a scene;
-        omega, angular velocity, a number, in rad/s of a cylinder, dimensionless of a scene, or
+        V, omega, numbers, in m/s and rad/s of a cylinder, dimensionless of a scene; omega perhaps
         None: the assumption on creepage is then not checked.
-    Returns None, exit code 0, also where an assumption does not hold.
+    Returns None also where an assumption does not hold.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read.
-    """
+    """  # noqa: E501
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))
 
 
@@ -331,29 +355,32 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
     ),
 )
 def ensemble(arguments: Namespace) -> None:
-    """Roll the motions of a run file and print the summary of all; without a store estimate time
-    and memory.
+    """Compute the motions of a run file with random initial speeds and parameters.
 
-    Blocks of motions that the store already has are not computed again; where there are any, their
-    number is printed.
+    The command computes the motions that the store does not contain yet, and summarises all motions.
+    Call it again to complete an interrupted run, or to extend the store after n was raised in the run file.
+    Without -o it prints the estimated size, memory and time of the run.
+
+    example:
+      viscoroll samples
+      viscoroll ensemble samples/ensemble.toml
 
     arguments: parsed command line with
         run_file, path of a TOML file;
         output, folder of the results (.zarr), which is made or completed, or None: a few motions
         are rolled as a trial, the estimate is printed, and nothing is written;
-        cluster, "local" for processes of this machine, "tcp://host:port" of a dask scheduler, or
-        None for threads of this process;
-        threads, number of threads or of local processes, >= 1, not used with a scheduler; None:
-        $VISCOROLL_THREADS, or where that is not set the cores available.
+        cluster, None for threads of this process, and threads, as the options above say.
     Motions beyond the model or the measured bands of the materials give a ModelWarning.
     With output standard error has a progress bar if it is a terminal, else lines of progress unless
     $VISCOROLL_QUIET is "1".
-    Returns None, exit code 0, also where motions ended early.
     Raises ParameterError for values that are not allowed, as cluster without output; FileError for
     a file that cannot be read or written, a store in use or a lost cluster; MissingDependencyError
     without zarr, dask for a cluster, or pyarrow for a sample in .parquet; Interrupted at Ctrl-C,
     finished blocks being kept.
-    """
+
+    Blocks of motions that the store already has are not computed again; where there are any, their
+    number is printed.
+    """  # noqa: E501
     run = vr.runs.read_run(arguments.run_file)
     if arguments.output is None:
         if arguments.cluster is not None:
@@ -381,11 +408,12 @@ def ensemble(arguments: Namespace) -> None:
 
 @command("verify", option("store", metavar="STORE.zarr", help="results of viscoroll ensemble"))
 def verify(arguments: Namespace) -> int:
-    """Compare the files of a results store with their SHA-256 and print the verdict.
+    """Check every file of a results store against its SHA-256.
+
+    The exit code is 1 if a file differs or is missing.
 
     arguments: parsed command line with store, path of the folder of the results.
-    Returns True, exit code 1, if a file differs or is missing, else False, exit code 0, also for a
-    run that is not finished; the verdict is printed in both cases.
+    Returns that code, True for 1, also for a run that is not finished.
     Raises FileError for a folder that is no store, or where the record of its start is damaged.
     """
     verdict = vr.runs.verify(arguments.store)
@@ -406,15 +434,17 @@ def verify(arguments: Namespace) -> int:
     TABLE,
 )
 def sensitivity(arguments: Namespace) -> None:
-    """Compute the Sobol indices of a run file, and print or write them.
+    """Compute Sobol indices of the uncertain inputs of a run file.
 
-    A heading, of text alone, has the numbers of base points and motions, the seed, the number of
-    motions for each way in which they ended, and the reasons why a quantity has no indices.
+    The table has first-order (S1) and total (ST) indices of the summarised quantities, with the half-width of the
+    95 % confidence interval (S1_conf, ST_conf), sorted by ST.  `viscoroll plot` draws the .nc file as bars.
+
+    example:
+      viscoroll sensitivity run.toml -n 4096 -o sensitivity.nc
 
     arguments: parsed command line with
         run_file, path of a TOML file;
-        n, number of base points in [16, 65536], 4096 if not given, which is rounded up to a power
-        of two; output, path of a .txt or .csv file to which the table, or of a .nc file to which
+        n, number of base points in [16, 65536]; output, path of a .txt or .csv file to which the table, or of a .nc file to which
         the dataset of :func:`.sensitivity.sobol_indices` is written; or None: standard output;
         beside a file the table is printed as text too;
         format of standard output without a file, "text", "csv" or "json".
@@ -422,14 +452,15 @@ def sensitivity(arguments: Namespace) -> None:
     bands of the materials give a ModelWarning.
     Returns None.  The table has a row for each quantity, time and input that has indices, with the
     columns quantity, t with its unit as "t [s]" (missing if every quantity is one number for each
-    motion), input, S1, S1_conf, ST and
-    ST_conf: first-order and total index, dimensionless, and the half-widths of their 95 %
-    confidence intervals.  Quantities are in the order of the run file, times ascending, and at each
+    motion), input, and the indices, dimensionless.  Quantities are in the order of the run file, times ascending, and at each
     time the largest ST is first.
     Raises ParameterError for values that are not allowed, as correlated inputs, and where no
     quantity has indices; FileError for a file that cannot be read or written;
     MissingDependencyError for a sample in .parquet without pyarrow.
-    """
+
+    A heading, of text alone, has the numbers of base points and motions, the seed, the number of
+    motions for each way in which they ended, and the reasons why a quantity has no indices.
+    """  # noqa: E501
     from ..runs.sensitivity import sobol_indices, table
 
     indices = sobol_indices(
@@ -472,17 +503,19 @@ _SPEEDS = 301
     output(*FIGURES),
 )
 def plot(arguments: Namespace) -> None:
-    """Draw the content of a file and write the figure.
+    """Draw a result file, a scene, a material, or the results of a run.
+
+    For a netCDF file the command draws its result, for a scene file the contact law over speed, for a file with only
+    a [material] moduli and relaxation, and for a results store the summaries.
 
     arguments: parsed command line with
         what, path of a .nc (result, table, material), a .toml (scene, cylinder, material) or a
         .zarr (results of a run);
-        output, path of the figure that is written; its suffix is the format: .png, .pdf or .svg.
-    Returns None.
+        output, path of the figure that is written; its suffix is the format.
     Raises ParameterError for another suffix of what, and for content without a figure, as a single
     state; FileError for a file that cannot be read or written; MissingDependencyError for a .zarr
     without zarr.
-    """
+    """  # noqa: E501
     from ..core.plots import save
 
     kinds = {

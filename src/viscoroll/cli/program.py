@@ -1,231 +1,281 @@
-"""The program: its parser, the help of each command, and its exit codes: 0 success, 1 a check
-failed, 2 an error, printed in one line.
+"""The program: its parser, its exit codes, and the commands of the installation.
 
-The first sentence of a help is the line of the command in ``viscoroll --help``; an example follows
-the text.
+The exit codes are 0 success, 1 a check failed, 2 an error, printed in one line.
+
+- ``viscoroll samples`` copies the sample files of the documentation into a folder of the user.
+- ``viscoroll warmup`` compiles all kernels into the cache.
+- ``viscoroll doctor`` prints the contents of a problem report.
 """
 
 from __future__ import annotations
 
 import argparse
+import inspect
 import io
 import os
+import platform
 import re
 import sys
+import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from importlib import metadata
+from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
-from .. import __version__
+import viscoroll as vr
+
 from ..core import Interrupted, ViscorollError
-from .arguments import COMMANDS
+from .arguments import COMMANDS, command, option
 
 # each of these modules adds its commands to the table, in this order
-from . import motion_commands, file_commands, installation_commands  # noqa: F401  # isort: skip
+from . import motion_commands, file_commands  # noqa: F401  # isort: skip
+
+# --- viscoroll samples ---
 
 
-# --- Help of each command, as viscoroll COMMAND --help prints it ---
+@command(
+    "samples",
+    option(
+        "folder",
+        metavar="FOLDER",
+        nargs="?",
+        default="samples",
+        help="folder for the files (default: samples)",
+    ),
+)
+def samples(arguments: argparse.Namespace) -> None:
+    """Copy the sample files of the documentation into a folder.
 
-#: Words of a command -> its help.
-HELP = {
-    "contact": """\
-Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
+    They are scene files, run files and measurements, which the examples of other commands read.
 
-The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT,
-LOW:HIGH:COUNT:log, or several of these, separated by commas.
+    example:
+      viscoroll samples
+      viscoroll contact samples/rubber.toml --V 0.5 --delta 0.01
 
-example:
-  viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5""",  # noqa: E501
-    "stress": """\
-Compute pressure and shear stress along the contact.
+    arguments: parsed command line with folder, path of the folder, which is made if it does not
+        exist; "samples" if not given.
+    Returns None; a path is printed on each line, in the order of their names, also of files that
+    were there already.
+    Raises FileError for a file there of the same name with other content, before any is written,
+    and where the folder cannot be written to.
+    """
+    for file in vr.datasets.copy_files(arguments.folder):
+        print(file)
 
-The stresses are given at 101 points of the contact, for one V and one delta (or omega).
 
-example:
-  viscoroll stress paper-section-5 --V 0.5 --delta -0.01""",
-    "roll": """\
-Integrate one free motion from given initial speeds.
+# --- viscoroll warmup ---
 
-The motion obeys Eq. (22), and may change between full slip and partial slip.
-For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
 
-example:
-  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 0:3e-3:7""",
-    "steady": """\
-Find the steady speeds under force, torque or slope.
+@command("warmup")
+def warm_up(arguments: argparse.Namespace) -> None:
+    """Compile all kernels in advance, so that the first calls do not wait.
 
-Each equilibrium of each load is a row.  If a load has no equilibrium, the reason is printed.
-Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
+    The compiled kernels go into the cache, once for each machine and version of the package.  If they are there
+    already, the command takes a second.
 
-example:
-  viscoroll steady paper-section-5-rounded --slope 0:0.1:6""",
-    "heat": """\
-Find the temperatures at which a cylinder runs.
+    example:
+      viscoroll warmup
 
-Each equilibrium of loss and heat given off is a row; unstable ones lie between two stable ones.
-The [material] needs wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
+    arguments: parsed command line, not used.
+    Returns None, exit code 0.
 
-example:
-  viscoroll samples
-  viscoroll heat samples/rubber.toml --V 0.5:4:8 --ambient 20 --conductance 2.5""",
-    "validity": """\
-Check the assumptions of the model at one speed.
+    A line with the number of calls, the folder of the cache and the time in s is printed at the
+    end.  Kernels that the cache has are loaded only.  A cache that cannot be written causes a
+    RuntimeWarning, and the line all the same.
+    """  # noqa: E501
+    from tqdm import tqdm
 
-Each line has the name of an assumption, whether it holds (yes, no, or ? if data are missing), and the reason.
+    from ..kernels.numerics import cache_folder
+    from ..kernels.numerics.cache_folder import cache_root
 
-example:
-  viscoroll validity rubber-roller --V 5 --omega 4.9""",  # noqa: E501
-    "ensemble": """\
-Compute the motions of a run file with random initial speeds and parameters.
+    cache_folder.announced = True  # the bar takes the place of the notice
+    start = time.perf_counter()
+    calls = _calls()
+    bar = tqdm(calls.items(), leave=False, disable=None)  # drawn on a terminal alone
+    for name, call in bar:
+        bar.set_description(name)
+        call()
+    print(
+        f"{len(calls)} entry points are ready in {cache_root()}, {time.perf_counter() - start:.1f} "
+        "s"
+    )
 
-The command computes the motions that the store does not contain yet, and summarises all motions.
-Call it again to complete an interrupted run, or to extend the store after n was raised in the run file.
-Without -o it prints the estimated size, memory and time of the run.
 
-example:
-  viscoroll samples
-  viscoroll ensemble samples/ensemble.toml""",  # noqa: E501
-    "verify": """\
-Check every file of a results store against its SHA-256.
+def _calls() -> dict[str, Callable[[], Any]]:
+    """Return small calls that together use all kernels.
 
-The exit code is 1 if a file differs or is missing.""",
-    "sensitivity": """\
-Compute Sobol indices of the uncertain inputs of a run file.
+    Motions use the kernels of contacts, and all motions have one integrator.  Half-spaces, lists of
+    alphas and of series, and layers have kernels of their own.
 
-The table has first-order (S1) and total (ST) indices of the summarised quantities, with the half-width of the
-95 % confidence interval (S1_conf, ST_conf), sorted by ST.  `viscoroll plot` draws the .nc file as bars.
+    Returns a dict, name for the progress bar -> function without arguments, whose result is not
+    used; each makes its call when it is called, and nothing is written but the cache.
+    """
+    from ..contact_mechanics.coupled_tables import coupled_law
+    from ..motion import flow
 
-example:
-  viscoroll sensitivity run.toml -n 4096 -o sensitivity.nc""",  # noqa: E501
-    "material show": """\
-Print moduli, relaxation modes and creep modes of the materials of a file.
+    scene = vr.presets.PAPER_SECTION_5
+    modes = vr.Prony([1.0, 2.0], [1.0, 0.1])
+    series = vr.Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
+    many = series.replace(material=vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
+    covered = series.replace(material=vr.Cover(modes, nu=0.5, thickness=1.0))
+    fast = covered.replace(coupled=False)
+    thick = fast.replace(material=vr.Cover(1.0, nu=0.5, thickness=[1.0, 1.5]))
+    state = partial(vr.contact, V=0.5, delta=0.01)
+    return {
+        # build_map computes a map; ensemble might find one on disk
+        "motions and flow maps": lambda: flow.build_map(
+            (scene.alpha, scene.kappa, scene.mu, scene.j), 1
+        ),
+        "contact by root solves": lambda: state(scene, method="direct"),
+        "contact with an array of alpha": lambda: state(vr.Scene([3.0, 4.0], 2.91, 0.2)),
+        "contact with an array of Prony series": lambda: state(many),
+        "unsteady rolling": lambda: state(series, fields="N"),
+        "bound law": lambda: vr.law(scene),
+        # a table of few nodes, also where that of the scene is on disk
+        "table of the coupled solution": lambda: coupled_law(covered, nodes=(4, 9)),
+        "contact on a cover": lambda: state(covered),
+        "motions on a cover": lambda: vr.roll(covered, 0.5, 0.5, 0.1),
+        "steady rolling on a cover": lambda: vr.steady(covered, force=0.01),
+        "bound law of a cover": lambda: vr.law(covered),
+        "fast law of a cover": lambda: state(fast),
+        "motions by the fast law": lambda: vr.roll(fast, 0.5, 0.5, 0.1),
+        "contact with an array of thicknesses": lambda: state(thick),
+        "steady rolling": lambda: vr.steady(scene, force=0.01),
+        "stress": lambda: vr.stress(scene, 0.5, 0.5, delta=0.01),
+    }
 
-The values are those at the temperature that the file states.
 
-example:
-  viscoroll samples
-  viscoroll material show samples/rubber.toml""",
-    "material fit": """\
-Fit a material to DMA data.
+# --- viscoroll doctor ---
 
-The command fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their
-headings, and prints how well the data determine it.  With -o it writes a [material] of a TOML file, or netCDF.
+#: Extra of the package -> the library that it installs.
+_EXTRAS = {"runs": "zarr", "cluster": "distributed"}
 
-The exit code is 1 and no file is written if the misfit exceeds --misfit, or if it exceeds 5 % with any --misfit.
-With --force the exit code is 0 and the file is written; the source of the data in it states the misfit.
 
-example:
-  viscoroll samples
-  viscoroll material fit samples/dma.csv --nu 0.49 -o rubber.toml""",  # noqa: E501
-    "identify": """\
-Identify friction, modulus, relaxation times and moduli, and bearing friction, from measurements.
+@command("doctor")
+def doctor(arguments: argparse.Namespace) -> int:
+    """Report versions, cache, threads, compiled functions and missing packages.
 
-The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states
-which of them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
-  [unknown]  NAME = [LOW, HIGH]: bounds; [cylinder] has the initial guess
-  [prior]    NAME = [VALUE, SD]
-  [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
-             Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m
+    Send this output with a report of a problem.  The exit code is 1 if a required package is missing.
 
-example:
-  viscoroll samples
-  viscoroll identify samples/measured.toml --plot fit.png""",  # noqa: E501
-    "tables law": """\
-Write the contact law of a material, pair, cover or range of alpha to a file.
+    example:
+      viscoroll doctor
 
-.nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
-or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
-every alpha of a range.  Of a cover it is the fast law (coupled = false); viscoroll tables grid writes the coupled one.
+    arguments: parsed command line, not used.
+    Returns True, exit code 1, if a required package or llvmlite is missing, else False, exit code
+    0; a faulty cache and missing optional libraries are only printed.  Of a viscoroll that is not
+    installed as a package, whose requirements are not known, llvmlite alone is examined.
+    Raises ParameterError for a wrong $VISCOROLL_THREADS.
+    """  # noqa: E501
+    required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()
+    names = [
+        # the name before the version, as of "numpy>=2.0"
+        re.split(r"[^\w-]", requirement)[0]
+        for requirement in required
+        if "extra ==" not in requirement
+    ]
+    versions = {name: _version(name) for name in (*names, "llvmlite")}
+    for name, value in _lines():
+        print(f"{name:<12} {value}")
+    print(
+        "packages    ",
+        ", ".join(f"{name} {version or 'MISSING'}" for name, version in versions.items()),
+    )
+    return None in versions.values()
 
-example:
-  viscoroll samples
-  viscoroll tables law samples/rubber.toml -o rubber.h""",  # noqa: E501
-    "tables build": """\
-Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
-The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
-.csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.
+def _lines() -> Iterator[tuple[str, str]]:
+    """Yield (name, text) of each line of the problem report but the last, which :func:`doctor`
+    prints.
 
-example:
-  viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc""",  # noqa: E501
-    "tables grid": """\
-Write the coupled solution of a roller over speed and creep as a law, for one mu and one thickness over l0.
+    They are: "viscoroll", version and folder of the package; "python", version and program;
+    "system"; "[runs]" and "[cluster]", version of the optional library, or how it is installed;
+    "threads", their number and where it is from; "cache", folder of compiled functions, their
+    number and size in MB, and its faults (:func:`_fault_of_cache`); "check", a call
+    (:func:`_check`).
+    Raises ParameterError for a wrong $VISCOROLL_THREADS.
+    """
+    from ..core.arrays import thread_count
+    from ..kernels.numerics.cache_folder import cache_root
+    from ..kernels.numerics.jit import sources_digest
 
-Pressure and shear are solved together.  The file is loaded by vr.load_law, as the material of the roller, and states
-the largest errors beside its nodes.  Formats: .nc, .cdf (without HDF5) and .h (a header of C).
+    yield "viscoroll", f"{vr.__version__}, in {Path(__file__).parents[2]}"
+    yield "python", f"{platform.python_version()} ({sys.executable})"
+    yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
+    for extra, name in _EXTRAS.items():
+        version = _version(name)
+        yield (
+            f"[{extra}]",
+            f"{name} {version}"
+            if version
+            else f"{name} is not installed: pip install 'viscoroll[{extra}]'",
+        )
+    source = "VISCOROLL_THREADS" if os.environ.get("VISCOROLL_THREADS") else "the cores available"
+    yield "threads", f"{thread_count(None)} ({source})"
+    folder = cache_root() / f"kernels-{sources_digest()}"
+    sizes = [path.stat().st_size for path in folder.glob("*") if path.is_file()]
+    state = (
+        f"{len(sizes)} compiled functions, {sum(sizes) / 1e6:.1f} MB"
+        if sizes
+        else "no compiled functions; `viscoroll warmup` compiles them"
+    )
+    yield "cache", f"{folder}: {state}{_fault_of_cache(folder)}"
+    yield "check", _check()
 
-example:
-  viscoroll samples
-  viscoroll tables grid samples/rubber.toml --method coupled -o rubber.nc""",  # noqa: E501
-    "tables info": """\
-Print the contents of a table file: functions or grid, stated errors, material and provenance.
 
-example:
-  viscoroll samples
-  viscoroll tables law samples/rubber.toml -o rubber.nc
-  viscoroll tables info rubber.nc""",
-    "tables validate": """\
-Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
+def _check() -> str:
+    """Evaluate one state of the contact, as a check that the package works.
 
-The exit code is 1 if an error is larger than twice the one that the file states, or than half of the largest value
-of a field of a grid.
+    The time is mostly that of compiling or loading the kernels, where they have not been used
+    before.
 
-example:
-  viscoroll samples
-  viscoroll tables law samples/rubber.toml -o rubber.nc
-  viscoroll tables validate rubber.nc""",  # noqa: E501
-    "export": """\
-Convert the results of a run, or a table, to another file format.
+    Returns a line of text: Q of the state, dimensionless, the time that the call took in s, and the
+    warnings that it gave.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        start = time.perf_counter()
+        Q = vr.contact(vr.presets.PAPER_SECTION_5, 0.5, delta=-0.01, fields="Q").Q
+        seconds = time.perf_counter() - start
+    texts = "".join(f"; {warning.message}" for warning in caught)
+    return (
+        f"contact of paper-section-5 at V = 0.5, delta = -0.01: Q = {Q:.12g}, {seconds:.1f} "
+        f"s{texts}"
+    )
 
-A results store (STORE.zarr) becomes .nc with summaries and stored motions.  A law becomes .nc, .cdf, .h or .json.
-A grid becomes .nc, .cdf, .csv, .txt or .mat.
 
-example:
-  viscoroll samples
-  viscoroll tables law samples/rubber.toml -o rubber.nc
-  viscoroll export rubber.nc -o rubber.h""",  # noqa: E501
-    "fmu": """\
-Build an FMU of a cylinder, for Modelica tools and others.
+def _version(name: str) -> str | None:
+    """Return the version of a package; None if it is not installed.
 
-The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
-Of a cover it is the fast law, as with coupled = false.
-Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
-ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
-Both provide exact directional derivatives.
+    name: name of the package.
+    """
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
 
-example:
-  viscoroll samples
-  viscoroll fmu samples/rubber.toml -o roller.fmu""",  # noqa: E501
-    "plot": """\
-Draw a result file, a scene, a material, or the results of a run.
 
-For a netCDF file the command draws its result, for a scene file the contact law over speed, for a file with only
-a [material] moduli and relaxation, and for a results store the summaries.""",  # noqa: E501
-    "samples": """\
-Copy the sample files of the documentation into a folder.
+def _fault_of_cache(folder: Path) -> str:
+    """Return why the cache of compiled functions is not used or cannot be written, as the end of a
+    line of the report.
 
-They are scene files, run files and measurements, which the examples of other commands read.
+    It is not used where others could write into it, or a folder is another user's.  It cannot be
+    written where the folder, or if it does not exist the nearest folder above it that does, is not
+    writable.
 
-example:
-  viscoroll samples
-  viscoroll contact samples/rubber.toml --V 0.5 --delta 0.01""",
-    "warmup": """\
-Compile all kernels in advance, so that the first calls do not wait.
+    folder: folder of the compiled functions, which need not exist.
+    Returns a text that begins with ";", or "" if the cache is in order.
+    """
+    from ..kernels.numerics.cache_folder import refuse_writable_by_others
 
-The compiled kernels go into the cache, once for each machine and version of the package.  If they are there
-already, the command takes a second.
-
-example:
-  viscoroll warmup""",  # noqa: E501
-    "doctor": """\
-Report versions, cache, threads, compiled functions and missing packages.
-
-Send this output with a report of a problem.  The exit code is 1 if a required package is missing.
-
-example:
-  viscoroll doctor""",
-}
+    try:
+        refuse_writable_by_others(folder)
+    except PermissionError as error:
+        return f"; it is NOT USED: {error.strerror}"
+    # a folder that is missing would be made in the nearest one above it
+    existing = next((path for path in (folder, *folder.parents) if path.exists()), folder)
+    return "" if os.access(existing, os.W_OK) else "; it CANNOT be written"
 
 
 # --- Parser and exit codes of the program ---
@@ -321,7 +371,9 @@ def parser() -> Parser:
     :data:`.arguments.COMMANDS`.
 
     A command of two words, as "tables law", has a subparser below that of its first word.  The help
-    of each command is that of :data:`HELP`.
+    of a command is the docstring of its function up to the paragraph on ``arguments``: a first
+    sentence, which ends its line and is the line of the command in ``viscoroll --help``, text, and
+    an example.
 
     Returns a :class:`Parser`.  The namespace that its ``parse_args`` returns has the arguments of
     the command, and ``run``, the function that takes the namespace and returns an exit code or
@@ -337,7 +389,7 @@ def parser() -> Parser:
         "Otherwise all are dimensionless.",
         epilog="example:\n  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 3e-3",
     )
-    program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
+    program.add_argument("--version", action="version", version=f"viscoroll {vr.__version__}")
     groups = {"": program.add_subparsers(metavar="COMMAND", required=True)}
     for words, (run, options) in COMMANDS.items():
         # of a single word the group is "", whose subparsers are those of the program
@@ -345,16 +397,17 @@ def parser() -> Parser:
         if group not in groups:
             subparser = groups[""].add_parser(group, help=_GROUPS[group])
             groups[group] = subparser.add_subparsers(metavar="COMMAND", required=True)
-        text, _, example = HELP[words].partition("\n\nexample:")
+        help_text = (inspect.getdoc(run) or "").partition("\n\narguments:")[0]
+        text, _, example = help_text.partition("\n\nexample:")
         # the first sentence, which ends its line
         summary = text.partition(".\n")[0].rstrip(".")
         epilog = f"example:{example}" if example else None
         subparser = groups[group].add_parser(name, help=summary, description=text, epilog=epilog)
-        for option in options:
+        for given in options:
             # a list is a group of which one at most may be given
-            alternatives = option if isinstance(option, list) else [option]
+            alternatives = given if isinstance(given, list) else [given]
             target = (
-                subparser.add_mutually_exclusive_group() if alternatives is option else subparser
+                subparser.add_mutually_exclusive_group() if alternatives is given else subparser
             )
             for add_to in alternatives:
                 add_to(target)

@@ -1,4 +1,4 @@
-/* FMU of a cylinder and the rows of its contact law.  fmu_build.py writes model.h, which selects the model and the version
+/* FMU of a cylinder and the rows of its contact law.  __init__.py writes model.h, which selects the model and the version
  * of the standard.
  *
  * ContactElement: v, omega, load -> force, torque, moments.  It has no states: model exchange, with all slopes.

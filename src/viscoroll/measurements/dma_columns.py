@@ -18,7 +18,7 @@ import numpy as np
 
 from ..core import FileError, ParameterError, suggestion
 from ..materials import ABSOLUTE_ZERO
-from .text_cells import MULTIPLIED, NO_UNIT, Numbers, conversion, readings
+from .text_cells import MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
 from .text_table import Table, find_column
 
 # --- Names of the columns of tests of materials in five languages ---
@@ -72,36 +72,19 @@ _COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")
 _WORD = re.compile("|".join(_LONG))
 
 
-class Meaning(NamedTuple):
-    """A quantity that a heading may name.
-
-    name : name of the quantity, a key of :data:`UNITS`.
-    mode : mode of the modulus, "tension", "shear", or "" where the heading does not say.
-    unit : unit in the heading or in the row of units, "" without.
-    log : base of the logarithms of which the column is, 0 of numbers.
-    sure : whether the unit stands in brackets, behind a slash or in the row of units, where nothing
-    else stands.
-    """
-
-    name: str
-    mode: str
-    unit: str
-    log: float
-    sure: bool
-
-
-def meanings(heading: str, row: str = "") -> list[Meaning]:
+def meanings(heading: str, row: str = "") -> list[Reading]:
     """Return all quantities that a heading may name, the likeliest first.
 
     heading : text of the heading, with its unit or without, as "E' [MPa]" or "Speichermodul".
     row : the cell of a row of units for this column, "" without.
-    Returns a list of :class:`Meaning`, one for each way to part the heading into name and unit
-    whose name is understood, in the order of :func:`.readings`: the name without a unit first; an
-    empty list where no name is.
+    Returns a list of :class:`Reading`, one for each way to part the heading into name and unit
+    whose name is understood, with that of the quantity and its mode, in the order of
+    :func:`.readings`: the name without a unit first; an
     """
-    found = [(_quantity(each.name), each) for each in readings(heading, row)]
     return [
-        Meaning(*quantity, each.unit, each.log, each.sure) for quantity, each in found if quantity
+        each._replace(name=found[0], mode=found[1])
+        for each in readings(heading, row)
+        if (found := _quantity(each.name))
     ]
 
 
@@ -235,7 +218,9 @@ def columns_of(
         if not table.has_numbers(index):
             faults = ["no numbers"]
         if "" in faults:
-            name, mode, unit, log, _ = found[faults.index("")]
+            reading = found[faults.index("")]
+            name = reading.name
+            unit = reading.unit
             sign = (
                 "1" if name == "strain" and any(each.unit for each in found) else ""
             )  # of a ratio, where per cent are as usual
@@ -249,8 +234,8 @@ def columns_of(
                     position=index,
                     heading=heading,
                     name=name,
-                    mode=mode,
-                    log=log,
+                    mode=reading.mode,
+                    log=reading.log,
                     unit=unit or ASSUMED[name],
                     stated=bool(unit),
                 )
@@ -262,14 +247,14 @@ def columns_of(
     return columns, others
 
 
-def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> list[Meaning]:
+def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> list[Reading]:
     """Return the ways to read a heading of a column whose quantity the user named, those with a
     unit first.
 
     name : the quantity.
     heading, row : text of the heading, and the cell of a row of units.
     overruling : quantity -> unit in place of that of the file.
-    Returns a list of :class:`Meaning`.  A modulus is of shear where the heading begins with G and
+    Returns a list of :class:`Reading`.  A modulus is of shear where the heading begins with G and
     at most three further letters or digits, as "Gp"; a heading that says "angular" is of an angular
     frequency.  A heading that states a unit cannot be read without one, and one with a power of ten
     has no known unit, if ``overruling`` has none.
@@ -279,10 +264,7 @@ def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> 
     if any("angular " + name == each.name for each in known):
         name = "angular " + name
     mode = mode if "Pa" in UNITS[name] else ""
-    ways = [
-        Meaning(name=name, mode=mode, unit=each.unit, log=each.log, sure=each.sure)
-        for each in readings(heading or "column", row)
-    ]
+    ways = [each._replace(name=name, mode=mode) for each in readings(heading or "column", row)]
     ways.sort(key=lambda each: each.unit in NO_UNIT)
     if name not in overruling and MULTIPLIED.search(heading):
         return [ways[0]._replace(unit=heading)]
@@ -319,11 +301,11 @@ def _quantity_of_column(name: str) -> str:
     return "tan delta" if name == "phase angle" else name
 
 
-def _contradiction(meaning: Meaning, heading: str, overruling: Mapping[str, str]) -> str:
+def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]) -> str:
     """Return why the unit of a heading contradicts the quantity that the heading may name, and what
     helps.
 
-    meaning : :class:`Meaning`, the quantity that the heading may name, with the unit that stands in
+    meaning : :class:`Reading`, the quantity that the heading may name, with the unit that stands in
     the heading.
     heading : text of the heading.
     overruling : quantity -> unit that the user gives in place of that of the file; these are not

@@ -5,8 +5,8 @@ relaxation modulus over time (:func:`read_relaxation`).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import product
 from os import PathLike
 from pathlib import Path
@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import Dataset, Figure, FileError, Floats, Result, SummaryRow, warn_of_model
+from ..core import FileError, Floats, warn_of_model
 from .dma_columns import UNITS, Column, numbers_of
-from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, rows_of
+from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, ModuliRecord
 from .table_reader import (
     ONE_FREQUENCY,
     PAIRS,
@@ -37,7 +37,7 @@ from .text_table import Table
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RelaxationModulus(Result):
+class RelaxationModulus(ModuliRecord):
     """Relaxation modulus over time, as :func:`viscoroll.read_relaxation` reads it from a file.
 
     It unpacks into its columns, ``t, relaxation = record``; ``fit_relaxation(record)`` takes it
@@ -61,70 +61,13 @@ class RelaxationModulus(Result):
     'tension'
     """
 
+    TITLE = "Relaxation modulus"
+    COLUMNS = ("t", "relaxation")
+    AXES = ("time, s", "relaxation modulus, Pa")
+
     t: Floats
     relaxation: Floats
     temperature: float | None = None
-    mode: str = "tension"
-    source: str = ""
-    columns: Mapping[str, str] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-
-    def __iter__(self) -> Iterator[Floats]:
-        """Return an iterator over t and relaxation, (n,) each."""
-        return iter((self.t, self.relaxation))
-
-    def to_xarray(self) -> Dataset:
-        """Return the points as a dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Variables ``t`` (s) and ``relaxation`` (Pa), each over the dimension ``point``.
-            Attributes, texts: ``title``, "Relaxation modulus"; ``mode``, "tension" or "shear";
-            ``source``, where the data are from; ``notes``, all notes in one text, separated by
-            "; ".  Where the temperature is known there is also ``temperature``, a number in
-            degrees Celsius.
-
-        Examples
-        --------
-        >>> import viscoroll as vr
-        >>> vr.RelaxationModulus([0.1, 1.0, 10.0], [3e6, 2e6, 1.5e6]).to_xarray().sizes["point"]
-        3
-        """
-        import xarray as xr
-
-        data = {
-            "t": ("point", self.t, {"units": "s"}),
-            "relaxation": ("point", self.relaxation, {"units": "Pa"}),
-        }
-        about = {"title": "Relaxation modulus", "mode": self.mode, "source": self.source}
-        about |= {"notes": "; ".join(self.notes)}
-        warmth = {} if self.temperature is None else {"temperature": self.temperature}
-        return xr.Dataset(data, attrs=about | warmth)
-
-    def _figure(self) -> Figure:
-        """Return the matplotlib figure of the relaxation modulus, Pa, against time, s.
-
-        Both axes are logarithmic.
-        """
-        from ..core.plots import new_figure
-
-        figure, axes = new_figure(f"{self.source or 'Relaxation modulus'}, {self.mode}")
-        axes.loglog(self.t, self.relaxation, "o", markerfacecolor="none", markersize=4)
-        axes.set(xlabel="time, s", ylabel="relaxation modulus, Pa")
-        return figure
-
-    def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report, as
-        :meth:`.dynamic_moduli.DynamicModuli._summary`.
-        """
-        words = (
-            f"{np.size(self.t)} points, t {np.min(self.t):.4g} to {np.max(self.t):.4g} s, "
-            f"{self.mode}"
-        )
-        words += "" if self.temperature is None else f", {self.temperature:g} °C"
-        return f"{self.source or 'Relaxation modulus'}: {words}", rows_of(self)
 
 
 def read_relaxation(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -46,7 +46,15 @@ _WINDOW = 0.25 * math.log(10.0)
 #: least number of points of a slope: five average the noise of usual DMA
 _NEIGHBOURS = 5
 #: column of a curve -> its unit
-UNITS = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "t": "s", "relaxation": "Pa"}
+UNITS = {
+    "omega": "rad s-1",
+    "storage": "Pa",
+    "loss": "Pa",
+    "t": "s",
+    "relaxation": "Pa",
+    "temperature": "degC",
+    "strain": "1",
+}
 #: range of ln omega below which frequencies count as one: some thousand roundings
 _APART = 1e-12
 
@@ -279,8 +287,120 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
 SAME_TEMPERATURE = 1.0
 
 
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class ModuliRecord(Result):
+    """Moduli as a reader of files returns them, with what the file says of them.
+
+    It unpacks into the columns :attr:`COLUMNS`.
+
+    Attributes
+    ----------
+    TITLE : title of the data, where they have no source.
+    COLUMNS : names of the columns, the abscissa first.
+    AXES : labels of abscissa and ordinate, each ends with its unit.
+    mode : "tension" or "shear".
+    source : name of the file.
+    columns : meaning -> heading of the column that was taken for it.
+    units : meaning -> unit in which that column was written.
+    notes : sentences: what was converted, compared, assumed, and which columns were left aside.
+    """
+
+    TITLE: ClassVar[str]
+    COLUMNS: ClassVar[tuple[str, ...]]
+    AXES: ClassVar[tuple[str, str]]
+
+    mode: str = "tension"
+    source: str = ""
+    columns: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """Symbols of several moduli; () of one."""
+        return ()
+
+    def __iter__(self) -> Iterator[Floats]:
+        """Return an iterator over the columns, (n,) each."""
+        return (getattr(self, name) for name in self.COLUMNS)
+
+    def to_xarray(self) -> Dataset:
+        """Return the points as a dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables of the dimension ``point``: omega (rad s-1), storage and loss (Pa), or t (s)
+            and relaxation (Pa); and, where they are known, temperature (degC) and strain
+            (dimensionless) of each point.  Attributes: title, mode, source and notes, the last as
+            one text, separated by "; ", and, where one is known for all points, temperature, a
+            number in degrees Celsius.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.read_dma(vr.datasets.path("dma.csv")).to_xarray().sizes["point"]
+        25
+        """
+        import xarray as xr
+
+        known = {name: value for name in UNITS if (value := getattr(self, name, None)) is not None}
+        data = {
+            name: ("point", values, {"units": UNITS[name]})
+            for name, values in known.items()
+            if np.ndim(values)
+        }
+        about = {"title": self.TITLE, "mode": self.mode, "source": self.source}
+        about |= {"notes": "; ".join(self.notes)}
+        # one temperature of all points
+        return xr.Dataset(data, attrs=about | {name: known[name] for name in known.keys() - data})
+
+    def _figure(self) -> Figure:
+        """Return the matplotlib figure of the moduli against the abscissa.
+
+        Both axes are logarithmic; the points of all temperatures are drawn alike.
+        """
+        from ..core.plots import new_figure
+
+        figure, axes = new_figure(f"{self.source or self.TITLE}, {self.mode}")
+        x, *moduli = (getattr(self, name) for name in self.COLUMNS)
+        for modulus in moduli:
+            axes.loglog(x, modulus, "o", markerfacecolor="none", markersize=4)
+        if self.symbols:
+            axes.legend(self.symbols, frameon=False)
+        axes.set(xlabel=self.AXES[0], ylabel=self.AXES[1])
+        return figure
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return title and rows of the printed report.
+
+        Returns (title: source, number of points, range of the abscissa, mode and, if the record
+        has them, temperatures, in one line; two :class:`SummaryRow`: the columns with their
+        headings and units, and the notes, or "no unused column" where there are none).
+        """
+        name = self.COLUMNS[0]
+        x = getattr(self, name)
+        words = [
+            f"{np.size(x)} points",
+            f"{name} {np.min(x):.4g} to {np.max(x):.4g} {self.AXES[0].split()[-1]}",
+            f"{self.mode} ({', '.join(self.symbols)})" if self.symbols else self.mode,
+        ]
+        if (temperature := getattr(self, "temperature", None)) is not None:
+            low = np.min(temperature)
+            high = np.max(temperature)
+            words.append(f"{low:g} °C" if low == high else f"{low:g} to {high:g} °C")
+        given = (
+            f"{meaning} {heading!r} in {self.units.get(meaning, '1')}"
+            for meaning, heading in self.columns.items()
+        )
+        return f"{self.source or self.TITLE}: {', '.join(words)}", [
+            SummaryRow("columns", "; ".join(given)),
+            SummaryRow("notes", "; ".join(self.notes) or "no unused column"),
+        ]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class DynamicModuli(Result):
+class DynamicModuli(ModuliRecord):
     """Storage and loss modulus over angular frequency, as :func:`viscoroll.read_dma` reads them
     from a file.
 
@@ -309,16 +429,20 @@ class DynamicModuli(Result):
     ('tension', 25)
     """
 
+    TITLE = "Dynamic moduli"
+    COLUMNS = ("omega", "storage", "loss")
+    AXES = ("angular frequency, rad/s", "modulus, Pa")
+
     omega: Floats
     storage: Floats
     loss: Floats
     temperature: Floats | None = None
-    mode: str = "tension"
-    source: str = ""
-    columns: Mapping[str, str] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
     strain: Floats | None = None
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """Symbols of storage and loss modulus by the mode."""
+        return ("G'", "G''") if self.mode == "shear" else ("E'", "E''")
 
     @property
     def isothermal(self) -> bool:
@@ -350,7 +474,7 @@ class DynamicModuli(Result):
                 f"fit_prony(record)"
             )
             warn_of_model(text)
-        return iter((self.omega, self.storage, self.loss))
+        return super().__iter__()
 
     def __len__(self) -> int:
         """Three: the columns that it unpacks into."""
@@ -365,98 +489,5 @@ class DynamicModuli(Result):
         Raises KeyError for another name, IndexError for another number.
         """
         if isinstance(name, (int, slice)):
-            return (self.omega, self.storage, self.loss)[name]
+            return tuple(super().__iter__())[name]
         return super().__getitem__(name)
-
-    def to_xarray(self) -> Dataset:
-        """Return the points as a dataset.
-
-        Returns
-        -------
-        xarray.Dataset
-            Variables omega (rad s-1), storage and loss (Pa) and, where they are not None,
-            temperature (degC) and strain (dimensionless), each with the dimension ``point``;
-            attributes title, mode, source and notes, the last as one text, separated by "; ".
-
-        Examples
-        --------
-        >>> import viscoroll as vr
-        >>> vr.read_dma(vr.datasets.path("dma.csv")).to_xarray().sizes["point"]
-        25
-        """
-        import xarray as xr
-
-        units = {
-            "omega": "rad s-1",
-            "storage": "Pa",
-            "loss": "Pa",
-            "temperature": "degC",
-            "strain": "1",
-        }
-        columns = {name: values for name in units if (values := getattr(self, name)) is not None}
-        data = {name: ("point", values, {"units": units[name]}) for name, values in columns.items()}
-        about = {
-            "title": "Dynamic moduli",
-            "mode": self.mode,
-            "source": self.source,
-            "notes": "; ".join(self.notes),
-        }
-        return xr.Dataset(data, attrs=about)
-
-    def _figure(self) -> Figure:
-        """Return the matplotlib figure of storage and loss modulus, Pa, against angular frequency,
-        rad/s.
-
-        Both axes are logarithmic; the points of all temperatures are drawn alike.
-        """
-        from ..core.plots import new_figure
-
-        figure, axes = new_figure(f"{self.source or 'Dynamic moduli'}, {self.mode}")
-        axes.loglog(
-            self.omega,
-            self.storage,
-            "o",
-            self.omega,
-            self.loss,
-            "o",
-            markerfacecolor="none",
-            markersize=4,
-        )
-        axes.legend(["G'", "G''"] if self.mode == "shear" else ["E'", "E''"], frameon=False)
-        axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, Pa")
-        return figure
-
-    def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the printed report.
-
-        Returns (title: source, number of points, range of omega in rad/s, mode and, if the record
-        has them, temperatures, in one line; two :class:`SummaryRow`: the columns with their
-        headings and units, and the notes, or "no unused column" where there are none).
-        """
-        words = [
-            f"{self.omega.size} points",
-            f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s",
-        ]
-        words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")
-        if self.temperature is not None:
-            low = self.temperature.min()
-            high = self.temperature.max()
-            words.append(f"{low:g} °C" if low == high else f"{low:g} to {high:g} °C")
-        return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows_of(self)
-
-
-def rows_of(record: Any) -> list[SummaryRow]:
-    """Return the rows of a printed report on where a record is from.
-
-    record: :class:`DynamicModuli` or :class:`.dma_reader.RelaxationModulus`, of which columns,
-        units and notes are read.
-    Returns two :class:`SummaryRow`: the headings of the columns with their units, and the notes.
-    """
-    given = (
-        f"{name} {record.columns[name]!r} in {record.units.get(name, '1')}"
-        for name in record.columns
-    )
-    return [
-        SummaryRow("columns", "; ".join(given)),
-        SummaryRow("notes", "; ".join(record.notes) or "no unused column"),
-    ]

@@ -324,12 +324,15 @@ class Reading(NamedTuple):
     log : base of the logarithms of which the column is, 10 or e; 0 of numbers.
     sure : whether the unit stands in brackets, behind a slash or "in", or in the row of units,
         where a unit is stated even if it is not understood.
+    mode : mode of a modulus, "tension" or "shear", of a name that is understood; "" where the
+        heading does not say, and of other readings.
     """
 
     name: str
     unit: str
     log: float = 0.0
     sure: bool = False
+    mode: str = ""
 
 
 def readings(heading: str, row: str = "") -> list[Reading]:
