@@ -340,8 +340,6 @@ _ERROR = (0.064, 0.058, 0.046, 0.029, 0.018, 0.011)
 _LEAST_SHEAR_ERROR = 0.02
 #: Error of Q divided by mu P and by the value of the assumption ``traction``, beside both.
 _SHEAR_ERROR = 0.4
-#: Creepage far above any delta_star, for full slip.
-_FULL_SLIP = 1e6
 
 
 def stated_error(thickness: float) -> float:
@@ -408,20 +406,15 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     """
     cover = scene.cover
     assert cover is not None
-    names = ("delta_0", "delta_star", "M_half_space", "M_cylinder")
-    forth, back = (
-        evaluate_contact(
-            scene.uncoupled, np.abs(V), creep=np.full((), slip), creep_is_omega=False, names=names
-        )
-        for slip in (_FULL_SLIP, -_FULL_SLIP)
-    )
-    # in full slip Q = +-mu: half the difference of M is what shear adds, over mu the strain
-    change = {name: 0.5 * (back[name] - forth[name]) / scene.mu for name in names[2:]}
-    free = forth["delta_0"]
-    star = forth["delta_star"]
+    by_base, by_cylinder, free, star = evaluate_contact(
+        scene.uncoupled,
+        np.abs(V),
+        creep=np.zeros(()),
+        creep_is_omega=False,
+        names=("excess_half_space", "excess_cylinder", "delta_0", "delta_star"),
+    ).values()
     # the law limits the excess x in units of delta_star/2 to x/(1 + x^4)^(1/4)
-    excess = change["M_half_space"] + (1.0 + free) * change["M_cylinder"] - free
-    limited = np.minimum(2.0 * np.abs(excess) / star, 1.0)
+    limited = np.minimum(2.0 * np.abs(by_base + (1.0 + free) * by_cylinder) / star, 1.0)
     with np.errstate(divide="ignore"):
         value = limited / (1.0 - limited**4) ** 0.25
     error = stated_error(float(np.min(cover.thinnest))) + _LEAST_SHEAR_ERROR

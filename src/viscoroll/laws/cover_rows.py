@@ -268,6 +268,8 @@ _OFFSET = 3e-5
 #: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row
 #: in 1/u
 _FAST_OCTAVES = 4
+#: factor of the speed from which on rolling is fast: above rounding, below any change of the rows
+_OVER = 1.0 + 1e-9
 #: octaves of rows beyond those, after which the first order in 1/u is accurate to rounding
 _BEYOND = 42
 #: nodes of the polynomials at either end, from 0.05 to 1 of their range: wide enough for the noise
@@ -342,15 +344,12 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     # the contact is longest at rest: all nodes have the number of terms that it needs
     orders = max(LEAST_TERMS, term_count(0.5 * slow_limit[_LAM] / thickness))
     e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
-    widest = (
-        cover.thickness
-        if cover.other_thickness is None
-        else max(cover.thickness, cover.other_thickness)
-    )
+    widest = max(cover.thickness, cover.other_thickness or 0.0)
     widest *= 1.0 if thickest is None else thickest / cover.thickness
     # rolling is fast where even the shortest time is long beside the transit of l0, or of a length
-    # of the thicker layer
-    last = math.frexp(modes.series.a[-1] * max(1.0, widest))[1] + _FAST_OCTAVES
+    # of the thicker layer; by a little more than that, for covers of one ``thickest`` to have as
+    # many rows in spite of rounding
+    last = math.frexp(modes.series.a[-1] * max(1.0, widest) * _OVER)[1] + _FAST_OCTAVES
     first_node = e0 * PER_OCTAVE - _END_NODES + 1
     # the last of the slow 52 nodes is 2^e0, the first of the fast ones 2^last
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
