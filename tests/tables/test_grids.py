@@ -271,7 +271,7 @@ def test_a_declared_fill_value_is_refused_and_six_digits_are_read(tmp_path):
     other["Q"] = (other.Q / np.abs(other.Q).max() * 0.3).round(6).assign_attrs(units="N/m")
     path = tmp_path / "other.nc"
     other.to_netcdf(path, engine="h5netcdf")
-    assert vr.load_law(path).slips
+    assert vr.load_law(path).rows.slips
     other.Q[1, 2] = np.nan
     other.to_netcdf(path, engine="h5netcdf", encoding={"Q": {"_FillValue": -7.5}})
     refused(partial(vr.load_law, path), "Q = nan at V[1], delta[2]", error=vr.FileError)

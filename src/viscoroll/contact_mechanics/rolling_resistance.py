@@ -72,15 +72,14 @@ class Branches:
     resistance : kappa (M - G V) at the nodes, (n,).
     extremum : whether a node is a local extremum of the curve, (n,).
     gain : G.
-    first, last : indices of the nodes at the ends of each branch, (branches,).
+    ends : indices of the nodes at the ends of the branches, (branches + 1,).
     """
 
     u: Floats
     resistance: Floats
     extremum: Booleans
     gain: float
-    first: Integers
-    last: Integers
+    ends: list[int]
 
     @cached_property
     def curve(self) -> Any:
@@ -113,7 +112,7 @@ class Branches:
         indices = []
         nodes = []
         tolerance = EXTREMUM_RTOL * np.abs(load)
-        for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
+        for first, last in pairwise(self.ends):
             values = self.resistance[first : last + 1]
             rising = values[-1] > values[0]
             low, high = (values[0], values[-1]) if rising else (values[-1], values[0])
@@ -217,14 +216,13 @@ def branches(law: LawTable, gain: float) -> Branches:
     # extrema were put behind the nodes
     is_flat = order >= u.size
     u = whole[order]
-    ends = np.concatenate([[0], np.flatnonzero(is_flat), [u.size - 1]])
+    ends = [0, *np.flatnonzero(is_flat).tolist(), u.size - 1]
     return Branches(
         u=u,
         resistance=_curve(law, gain, u)[0],
         extremum=is_flat,
         gain=gain,
-        first=ends[:-1].copy(),
-        last=ends[1:].copy(),
+        ends=ends,
     )
 
 

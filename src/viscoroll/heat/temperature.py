@@ -613,7 +613,7 @@ def pair_temperatures(
         # the loss of a body is at most P |V|/(2 kappa)
         hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
         ends = np.log2(curve.at(np.array([at, hottest]))[0])
-        axes.append(curve.temperature_of(np.linspace(float(ends[0]), float(ends[1]), _NODES)))
+        axes.append(curve.temperature_of(np.linspace(ends[0], ends[1], _NODES)))
     grid = np.array(np.meshgrid(*axes, indexing="ij"))
     F = rest(grid.reshape(2, -1)).reshape(grid.shape) > 0.0
     # (2 balances, cells, cells, 2, 2): cells in which each balance has both signs at the corners

@@ -50,7 +50,7 @@ from ..materials import (
 from .law_grid import load_grid
 from .law_rows import FIELDS, CoupledRows
 from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
-from .row_layout import COVER_FUNCTIONS, CoverRows, steady_columns, steady_table
+from .row_layout import COVER_FUNCTIONS, STEADY, CoverRows, steady_table
 
 #: attributes of a cover that its file states besides the series; the last one where the other body
 #: is a layer
@@ -114,7 +114,7 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> Data
         return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
     creep = np.moveaxis(law.cover.creep, 0, -1)
     numbers = SimpleNamespace(
-        coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1),
+        coefficients=np.concatenate([law.steady_coefficients[..., STEADY], creep], axis=-1),
         limits=law.cover.limits,
         e0=law.e0,
         alpha=law.alpha,

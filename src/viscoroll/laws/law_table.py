@@ -345,11 +345,6 @@ def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
 _lock = threading.Lock()
 
 
-@lru_cache(maxsize=_KEPT_TABLES)
-def _made(material: float | Prony | Bodies) -> LawTable:
-    return make_table(material)
-
-
 def make_table(
     material: float | Prony | Bodies,
     coefficients: Floats | None = None,
@@ -416,6 +411,9 @@ def make_table(
         half_space_weight=weights,
         cover=cover,
     )
+
+
+_made = lru_cache(maxsize=_KEPT_TABLES)(make_table)
 
 
 # --- The law of one relaxation time for all alpha ---
@@ -504,7 +502,9 @@ def law_axis(low: float, high: float) -> LawAxis:
         tables = tables_of_octave(octave)
         # T_mean of one relaxation time is (alpha - 1)/alpha, in units of T_epsilon
         c = np.array([table.T_mean for table in tables])[:, None, None, None]
-        pieces.append(alpha_terms(to_axis(np.array([table.coefficients for table in tables]), c)))
+        columns = to_axis(np.array([table.coefficients for table in tables]), c)
+        # coefficients of T_0 to T_15 in s = 2 log2(alpha/2^n) - 1
+        pieces.append(np.einsum("jk,k...->j...", _nodes()[1], columns))
     rows = tuple(piece.shape[1] for piece in pieces)
     coefficients = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
     for padded, piece in zip(coefficients, pieces, strict=True):
@@ -522,15 +522,6 @@ def tables_of_octave(octave: int) -> list[LawTable]:
     rows.
     """
     return [make_table(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
-
-
-def alpha_terms(values: Floats) -> Floats:
-    """Return the Chebyshev terms of functions of alpha, by :func:`numpy.einsum`.
-
-    values: values of the functions at the nodes of an octave, (16, ...).
-    Returns the coefficients of T_0 to T_15 in s = 2 log2(alpha/2^n) - 1, in the same shape.
-    """
-    return np.einsum("jk,k...->j...", _nodes()[1], values)
 
 
 @lru_cache(maxsize=1)

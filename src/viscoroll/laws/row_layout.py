@@ -51,7 +51,7 @@ COVER_FUNCTIONS = (
 #: functions of a cover with limits for u -> infinity: lam and these
 _LIMITED = 1 + len(COVER_FUNCTIONS)
 #: columns of the functions of steady rolling, all but N
-_STEADY = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
+STEADY = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
 #: functions of a table over alpha in their order; m is M/V of both bodies, which are alike
 AXIS_FUNCTIONS = ("lam", "epsilon", "m", "N", "share", "press")
 #: columns of a table that those are taken from
@@ -106,15 +106,8 @@ def steady_table(powers: Any, N: float = math.nan) -> Floats:
     """
     powers = np.stack(powers, axis=-1)
     table = np.full((*powers.shape[:-1], len(FUNCTIONS)), N)
-    table[..., _STEADY] = powers
+    table[..., STEADY] = powers
     return table
-
-
-def steady_columns(table: Floats) -> Floats:
-    """Return the columns of a ``table`` but N as a new array (rows, 24 powers, 6 functions), in its
-    order.
-    """
-    return table[..., _STEADY]
 
 
 def constant_rows(*values: float) -> Floats:
