@@ -8,8 +8,6 @@ p_0 = E* a/(2 R).  In a layer it follows from the field of the layer under such 
 same load.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache

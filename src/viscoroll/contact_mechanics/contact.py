@@ -6,8 +6,6 @@ viscoelastic cylinder on a viscoelastic half-space, Acta Mechanica (2020),
 doi:10.1007/s00707-020-02643-5.
 """
 
-from __future__ import annotations
-
 import ctypes
 import math
 from collections.abc import Callable, Iterable

@@ -20,8 +20,6 @@ coefficient of friction, V the speed over R/T_ref, omega the angular velocity ti
 - ``dA_dB``, slope of the field A over B.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from functools import lru_cache

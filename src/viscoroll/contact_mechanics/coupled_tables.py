@@ -11,8 +11,6 @@ on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load
 it only through that ratio.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import sys

@@ -6,8 +6,6 @@ G on the speed turns M(V) = load into M(V) - G V = load, the same problem with a
 is dimensionless unless units are named; a law is a :class:`LawTable`, the rows of one material.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -19,8 +19,6 @@ other one the speeds.  Where friction does not suffice, the part of the load tha
 is returned, and the state does not exist.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any, NamedTuple
 

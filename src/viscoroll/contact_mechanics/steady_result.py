@@ -4,8 +4,6 @@ P is the load that presses the cylinder on its base, R its radius, T_ref the uni
 R/l0 with the contact length at rest l0, and mu the coefficient of friction.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property

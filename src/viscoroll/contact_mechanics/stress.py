@@ -8,8 +8,6 @@ over half the length, beta the part of it that sticks, zeta half the transit tim
 time of the material, alpha the instantaneous over the long-time modulus.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from itertools import pairwise

@@ -8,8 +8,6 @@ material; turning points are the extrema of that speed over the temperature.
 :func:`warming` integrates the balance of heat over time.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import pairwise

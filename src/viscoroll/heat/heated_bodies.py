@@ -11,8 +11,6 @@ for a body with b_T beside an elastic one, whose modulus stays: their law at the
 is read.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable

@@ -9,8 +9,6 @@ The law of a pair depends on kappa V a_T of one body and on the ratio of both ti
 pair of temperatures has a law of its own, of which the rows are made where they are read.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from functools import lru_cache, partial

@@ -37,8 +37,6 @@ The eleven quantities of a node, in the order of the indices below, are
 All are dimensionless (:mod:`.cover_law` has the formulas in which they enter).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

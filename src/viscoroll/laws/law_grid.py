@@ -8,8 +8,6 @@ Splines are tensor splines by scipy (:func:`fit_spline`), which are packed into 
 compiled code reads (:func:`pack_spline`, ``kernels.splines``).
 """
 
-from __future__ import annotations
-
 import io
 import math
 from collections.abc import Iterator

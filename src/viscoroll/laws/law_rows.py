@@ -20,8 +20,6 @@ length over that at rest, (1 + 2 h/z)^(-1/2).
 grid: :class:`CoupledRows`, with the vector of splines that kernels read (:mod:`.coupled_splines`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple

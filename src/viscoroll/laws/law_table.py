@@ -15,8 +15,6 @@ h/z)^(-1/2), and its shift over half the length epsilon = g/z; eta is z of the s
 quantities are dimensionless; M/V is in units of P T_ref.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from collections.abc import Callable

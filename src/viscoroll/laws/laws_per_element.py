@@ -7,8 +7,6 @@ reads a part of a row has it made if it is that of another element.  Such a reco
 thread.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from functools import lru_cache

@@ -22,8 +22,6 @@ dimensionless: times are divided by T_ref, the unit of time of the material.
 - s: place of alpha in its octave [2^n, 2^(n+1)), s = 2 log2(alpha/2^n) - 1, in [-1, 1].
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
