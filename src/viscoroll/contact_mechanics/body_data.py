@@ -143,7 +143,7 @@ def _layer_shear(nu: float) -> Floats:
     found = np.empty(_THETA.size)
     for n, a in enumerate(_THETA.tolist()):  # of the thickness 1
         k = np.geomspace(1e-4, 60.0 / min(a, 1.0), _WAVES)
-        z = np.linspace(0.0, min(2.5 * a, 1.0), _DEPTHS)[:, np.newaxis]
+        z = np.linspace(0.0, min(2.5 * a, 1.0), _DEPTHS)[:, None]
         s = np.minimum(k, 25.0)
         # beyond k h = 25 cosh and sinh overflow the digits, and the layer is a half-space
         kz = np.minimum(k, 25.0) * z
@@ -264,7 +264,7 @@ class BodyData:
         series = self.scene.series
         if not records or series is None:
             return None
-        lowest, highest = zip(*(data.transit_band for data in records), strict=True)
+        lowest, highest = zip(*(data.transit_band for data in records))
         low = max(lowest) * self.T_ref
         high = min(highest) * self.T_ref
         if self.scene.cover is not None:

@@ -239,7 +239,7 @@ def speed_nodes(law: LawTable) -> Floats:
     densities = _FAR_NODES, _CLOSE_NODES, _FAR_NODES
     parts = [
         np.linspace(start, stop, (stop - start) * density, endpoint=False)
-        for (start, stop), density in zip(pairwise(ends), densities, strict=True)
+        for (start, stop), density in zip(pairwise(ends), densities)
     ]
     return np.concatenate([*parts, ends[-1:]])
 
@@ -266,8 +266,8 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
     signed = np.abs(values) > noise
     _, zeros, _ = zeros_between(
         lambda x, _: function(x),
-        nodes[np.newaxis, signed],
-        values[np.newaxis, signed],
+        nodes[None, signed],
+        values[None, signed],
         np.broadcast_to(noise, nodes.shape)[signed],
     )
     return zeros

@@ -239,7 +239,7 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
     """
     if bad.any():
         first = np.argwhere(bad)[0]
-        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first, strict=True))
+        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first))
         found = (
             f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at "
             f"{place or variable.name}"
@@ -529,7 +529,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     from ..kernels.law.spline_law import TERMS
 
     edges = knots[degree : knots.size - degree]
-    of = np.arange(edges.size - 1)[:, np.newaxis]
+    of = np.arange(edges.size - 1)[:, None]
     own = np.arange(degree + 1)
     basis = np.zeros((edges.size - 1, TERMS, TERMS))
     every = BSpline(knots, np.eye(knots.size - degree - 1), degree)
