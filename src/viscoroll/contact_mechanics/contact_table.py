@@ -313,7 +313,7 @@ def evaluate_contact(
         allowed = "left out for many materials in one call: compute it for one of them, material[i]"
         refuse_fields(names, (UNSTEADY,), allowed)
         # the index of the material stands in the place of alpha
-        arrays["alpha"] = np.arange(len(material), dtype=np.float64)
+        arrays["alpha"] = np.arange(len(material), dtype=float)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
         if not material.coupled.graded:

@@ -578,7 +578,7 @@ class CoupledRow:
             neighbour, which halves the time and changes results by about 1e-5.
         Returns the :class:`CoupledStates`; ``status`` is not 0 where no solution was found.
         """
-        given = np.asarray(creeps, dtype=np.float64)
+        given = np.asarray(creeps, dtype=float)
         found = np.empty((given.size, coupled_states.COLUMNS))
         # kernels take kappa delta, half of the reduced creepage, ascending
         order = np.argsort(given)

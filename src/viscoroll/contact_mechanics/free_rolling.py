@@ -318,7 +318,7 @@ class FreeRolling:
         else:
             pairs = (series_in_own_time(total_series(one)) for one in scene.material_array)
             materials, unit = zip(*pairs)
-            unit = np.array(unit, np.float64)
+            unit = np.array(unit, float)
             index = np.arange(unit.size)
         gamma = np.nan if scene.gamma is None else scene.gamma
         with np.errstate(over="ignore"):

@@ -256,7 +256,7 @@ class Steadiness(Assumption):
         left = np.asarray(self.ten_percent.left)
         whole = np.asarray(self.whole)
         return np.divide(
-            left, whole, out=np.asarray(self.value > STEADY_LIMIT, np.float64), where=left < whole
+            left, whole, out=np.asarray(self.value > STEADY_LIMIT, float), where=left < whole
         )[()]
 
 

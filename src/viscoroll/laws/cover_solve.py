@@ -207,7 +207,7 @@ class CoverModes:
             )
             if thickness is not None:
                 nodes = layer_nodes(nu)
-                mine = np.full(nodes.u.size, name == "base", np.float64)
+                mine = np.full(nodes.u.size, name == "base", float)
                 kernels.append(
                     # u is the wave number times the thickness, and the thickness is over l0
                     [nodes.u / thickness, nodes.L, nodes.shear, sign * nodes.C, mine, 1.0 - mine]

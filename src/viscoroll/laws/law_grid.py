@@ -280,7 +280,7 @@ def _valid_range(variable: DataArray) -> Floats:
     """
     low, high = variable.attrs.get("valid_range", (-np.inf, np.inf))
     limits = (variable.attrs.get("valid_min", low), variable.attrs.get("valid_max", high))
-    packed = np.array([np.asarray(limit, np.float64).item() for limit in limits])
+    packed = np.array([np.asarray(limit, float).item() for limit in limits])
     factor = variable.encoding.get("scale_factor", 1.0)
     # a negative factor exchanges low and high
     return np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
@@ -407,7 +407,7 @@ def _in_si(table: Dataset) -> Dataset:
             elif given["V"] == "1":
                 allowed += ", since V has no unit"
             raise ParameterError(f"unit of {name}", unit, allowed) from error
-        table = table.assign({name: table[name].astype(np.float64) * by})
+        table = table.assign({name: table[name].astype(float) * by})
     if given["V"] == "1":
         return table.assign_attrs(R=1.0, load=1.0)
     # the load is needed only to make a limit of mu
@@ -432,7 +432,7 @@ def _law_of(table: Dataset) -> LawGrid:
     single node, other dimensions, or an R, or a mu and load, that are no finite numbers > 0.
     """
     V = check_array("V", table["V"].values, above=0.0)
-    delta = table["delta"].values.astype(np.float64)
+    delta = table["delta"].values.astype(float)
     limit = friction_limit(table.attrs)
     most = limit if limit < np.inf else 1.0
     Q = table["Q"].transpose("V", "delta").values

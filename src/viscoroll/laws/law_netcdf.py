@@ -245,7 +245,7 @@ def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
     Raises ValueError for shapes that do not go together, KeyError for a variable that is missing.
     """
     u, t, edges = (
-        lock_array(np.array(numbers[name], dtype=np.float64)) for name in ("u", "t", "edges")
+        lock_array(np.array(numbers[name], dtype=float)) for name in ("u", "t", "edges")
     )
     if fields.shape != (u.size + 2, t.size, len(FIELDS)) or edges.shape != (u.size + 2, 4):
         raise ValueError(f"its functions have shape {fields.shape[:-1]}")
@@ -282,7 +282,7 @@ def _coefficients(content: Content) -> Floats:
     """
     names = KINDS[content.attributes[KIND]].functions
     return lock_array(
-        np.stack([content.numbers[name] for name in names], axis=-1).astype(np.float64)
+        np.stack([content.numbers[name] for name in names], axis=-1).astype(float)
     )
 
 

@@ -273,7 +273,7 @@ def series_record(material: Any) -> tuple[Any, Floats]:
         weights=np.empty(0),
         Q=np.ones((1, 1)),
     )
-    return one, np.array(material, dtype=np.float64).reshape(-1)
+    return one, np.array(material, dtype=float).reshape(-1)
 
 
 class ModesValues(NamedTuple):
