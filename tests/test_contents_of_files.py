@@ -127,7 +127,7 @@ def test_tables_and_DMA_files_of_other_programs():
             .drop_attrs(deep=False)
             .assign_attrs(R=0.1)
         )
-    ).slips
+    ).rows.slips
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,6 @@ import viscoroll as vr
 from viscoroll import fmu
 from viscoroll.cli import main
 from viscoroll.core.errors import MissingDependencyError
-from viscoroll.fmu import MODELS
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
 fmpy = pytest.importorskip("fmpy", reason="not installed (make interop): fmpy")

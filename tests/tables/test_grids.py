@@ -258,7 +258,7 @@ def test_declared_invalid_values_are_refused_and_six_digits_are_read(tmp_path):
     other["Q"] = (other.Q / np.abs(other.Q).max() * 0.3).round(6).assign_attrs(units="N/m")
     path = tmp_path / "other.nc"
     other.to_netcdf(path, engine="h5netcdf")
-    assert vr.load_law(path).slips
+    assert vr.load_law(path).rows.slips
     for limits in ({"valid_min": 1.0, "valid_max": 2.0}, {"valid_range": [1.0, 2.0]}):
         bounded = other.assign(M=other.M.assign_attrs(limits))
         bounded.to_netcdf(path, engine="h5netcdf")

@@ -8,12 +8,10 @@ p_0 = E* a/(2 R).  In a layer it follows from the field of the layer under such 
 same load.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -145,7 +143,7 @@ def _layer_shear(nu: float) -> Floats:
     found = np.empty(_THETA.size)
     for n, a in enumerate(_THETA.tolist()):  # of the thickness 1
         k = np.geomspace(1e-4, 60.0 / min(a, 1.0), _WAVES)
-        z = np.linspace(0.0, min(2.5 * a, 1.0), _DEPTHS)[:, np.newaxis]
+        z = np.linspace(0.0, min(2.5 * a, 1.0), _DEPTHS)[:, None]
         s = np.minimum(k, 25.0)
         # beyond k h = 25 cosh and sinh overflow the digits, and the layer is a half-space
         kz = np.minimum(k, 25.0) * z
@@ -200,21 +198,6 @@ NO_SPEEDS = math.inf, 0.0
 #: log2 of kappa V at which the contact length of a cover is evaluated: interpolation between them
 #: has an error below 1 %.
 _OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
-
-
-class WaveRatio(NamedTuple):
-    """A speed compared with the slowest shear wave.
-
-    ratio : speed divided by the shear wave speed, >= 0, in the shape to which speed and moduli
-        broadcast; None where no density is known.
-    unknown : names of the bodies whose density is not known, as "the cylinder"; without rigid
-        bodies.
-    decides : whether the density of the softest body, by its long-time shear modulus, is known.
-    """
-
-    ratio: Any
-    unknown: list[str]
-    decides: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -281,7 +264,7 @@ class BodyData:
         series = self.scene.series
         if not records or series is None:
             return None
-        lowest, highest = zip(*(data.transit_band for data in records), strict=True)
+        lowest, highest = zip(*(data.transit_band for data in records))
         low = max(lowest) * self.T_ref
         high = min(highest) * self.T_ref
         if self.scene.cover is not None:
@@ -354,19 +337,11 @@ class BodyData:
         example where the contact at rest is longer than the radius, or the radius seems to be in
         mm.
         """
-        below_waves = None if self.wave_speed is None else (0.0, self.wave_speed)
-        bands = [
-            band
-            for band in (
-                self.measured_speeds,
-                NO_SPEEDS
-                if self.soft_for_load or not (self.small_at_rest and self.in_metres)
-                else None,
-                below_waves,
-            )
-            if band is not None
-        ]
-        return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
+        bands = [self.measured_speeds, self.wave_speed and (0.0, self.wave_speed)]
+        if self.soft_for_load or not (self.small_at_rest and self.in_metres):
+            bands.append(NO_SPEEDS)
+        known = [band for band in bands if band]
+        return (max(low for low, _ in known), min(high for _, high in known)) if known else None
 
     @cached_property
     def wave_speed(self) -> float | None:
@@ -374,7 +349,7 @@ class BodyData:
         known.
         """
         # the ratio of a speed of 1 m/s
-        slowness = self.wave_ratio(np.ones(()), None).ratio
+        slowness = self.wave_ratio(np.ones(()), None)[0]
         return None if slowness is None else 1.0 / float(np.max(slowness))
 
     def relative_length(self, rate: Any) -> Any:
@@ -391,15 +366,15 @@ class BodyData:
         )
         return lam
 
-    def wave_ratio(self, speed: Any, density: float | None) -> WaveRatio:
+    def wave_ratio(self, speed: Any, density: float | None) -> tuple[Any, list[str], bool]:
         """Return the ratio of a speed to the slowest shear wave of both bodies, by their long-time
         shear moduli.
 
         speed: the speed, m/s, >= 0, any shape that broadcasts with G.
         density: density of the cylinder, and of the base where they are alike or the cylinder is
             rigid, kg/m^3; None: as the materials have it.
-        Returns a :class:`WaveRatio`: the largest ratio of the bodies whose density is known, in the
-        broadcast shape, None if there is none; the names of the other bodies; and whether the
+        Returns (ratio, names, decides): the largest ratio of the bodies whose density is known, in
+        the broadcast shape, None if there is none; the names of the other bodies; and whether the
         softest body is among the known ones.  Rigid bodies do not count.  Like bodies of one
         material count as one, "the material".
         """
@@ -423,7 +398,7 @@ class BodyData:
         unknown = [name for name, _, rho in bodies if rho is None]
         *_, decisive = min(bodies, key=lambda body: np.min(body[1], initial=np.inf))
         largest = np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None
-        return WaveRatio(largest, unknown, decisive is not None)
+        return largest, unknown, decisive is not None
 
     def extend_validity(
         self, report: Validity, lam: Any, V: Any, omega: Any, density: float | None

@@ -6,8 +6,6 @@ viscoelastic cylinder on a viscoelastic half-space, Acta Mechanica (2020),
 doi:10.1007/s00707-020-02643-5.
 """
 
-from __future__ import annotations
-
 import ctypes
 import math
 from collections.abc import Callable, Iterable
@@ -489,14 +487,14 @@ class _LawOfGrid(Law):
         """Compile the splines of a ``grid`` of loads over V and delta; V and omega then have the
         units of the grid.
 
-        Of the :class:`LawGrid`, which becomes ``roller``, ``rows``, ``most`` and ``R`` are read.
+        Of the :class:`LawGrid`, which becomes ``roller``, ``rows`` and ``R`` are read.
         """
         from ..kernels.law.spline_law import jitted_table
 
         self.roller: Any = grid
         self._covered = _EVERY_SPEED
         scale = {"V": 1.0, "omega": 1.0 / grid.R, "Q": 1.0, "M": 1.0}
-        self._use(jitted_table(grid.rows.vector, grid, 1.0, grid.most, scale))
+        self._use(jitted_table(grid.rows.vector, grid, 1.0, grid.rows.mu, scale))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         """Return the law at arrays, one state after another, because the compiled law takes one

@@ -20,8 +20,6 @@ coefficient of friction, V the speed over R/T_ref, omega the angular velocity ti
 - ``dA_dB``, slope of the field A over B.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from functools import lru_cache
@@ -89,7 +87,7 @@ ACCURACY = "M_error"
 #: l0, C_rr is M/(P R).
 _MULTIPLES = {"length": "lam", "C_rr": "M", ACCURACY: "lam"}
 #: Field of like bodies -> the field of which it is half.
-_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
+_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV")))
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
 _KNOWN = (
@@ -315,7 +313,7 @@ def evaluate_contact(
         allowed = "left out for many materials in one call: compute it for one of them, material[i]"
         refuse_fields(names, (UNSTEADY,), allowed)
         # the index of the material stands in the place of alpha
-        arrays["alpha"] = np.arange(len(material), dtype=np.float64)
+        arrays["alpha"] = np.arange(len(material), dtype=float)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
         if not material.coupled.graded:

@@ -66,7 +66,7 @@ def _fit() -> tuple[Floats, Floats]:
     1] is the place of ln|x| in the bin).
     """
     nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
-    logs = LOWEST + WIDTH * (np.arange(BINS)[:, np.newaxis] + 0.5 * (1.0 + nodes))
+    logs = LOWEST + WIDTH * (np.arange(BINS)[:, None] + 0.5 * (1.0 + nodes))
     return np.exp(logs).ravel(), np.linalg.inv(np.vander(nodes, DEGREE + 1, increasing=True))
 
 
@@ -148,7 +148,7 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     nodes = layer_nodes(nu)
     k = nodes.u / thickness
     size, _ = _fit()
-    phase = size[:, np.newaxis] * k
+    phase = size[:, None] * k
     small = phase < _SMALL_PHASE
     safe = np.where(small, 1.0, phase)
     # 1 - cos y = 2 sin^2(y/2) keeps its digits
@@ -186,7 +186,7 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
     # with the imaginary part; the coupling, without -i sgn(k), takes them the other way round
     weights = np.concatenate([excess * compliance.real, excess * compliance.imag]).T
     even, odd = (phases @ weights).reshape(2, -1, 6).transpose(0, 2, 1)
-    sign = np.array([1.0, -1.0])[:, np.newaxis, np.newaxis]
+    sign = np.array([1.0, -1.0])[:, None, None]
     found = np.concatenate([even[3:5] + sign * odd[:2], even[2:3] - sign * odd[5:]], axis=1)
     # phases are divided by y^2 = (k x)^2, the second antiderivative of a wave by k^2
     return found * _fit()[0] ** 2
@@ -247,7 +247,7 @@ def growth(bodies: Any, times: Floats) -> Floats:
     rate = np.zeros_like(times)
     for body in bodies:
         compliance += body.share * body.instant
-        for strength, time in zip(body.J, body.T, strict=True):
+        for strength, time in zip(body.J, body.T):
             x = times / time
             compliance -= body.share * strength * np.expm1(-x)
             rate += body.share * strength * x * np.exp(-x)
@@ -277,8 +277,8 @@ def _element_points(nodes: Floats) -> tuple[Floats, Floats]:
     each, in the unit of ``nodes``, (n,).
     """
     points, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    halves = 0.5 * np.diff(nodes)[:, np.newaxis]
-    return (nodes[:-1, np.newaxis] + halves * (1.0 + points)).ravel(), (halves * weights).ravel()
+    halves = 0.5 * np.diff(nodes)[:, None]
+    return (nodes[:-1, None] + halves * (1.0 + points)).ravel(), (halves * weights).ravel()
 
 
 def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
@@ -538,7 +538,7 @@ class CoupledRow:
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         ends = [
             coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
-            for sign, out in zip((-1.0, 1.0), self._full, strict=True)
+            for sign, out in zip((-1.0, 1.0), self._full)
         ]
         # kappa delta at the onset of full slip of negative and of positive sign
         self._ends = [onset for onset, _ in ends]
@@ -580,7 +580,7 @@ class CoupledRow:
             neighbour, which halves the time and changes results by about 1e-5.
         Returns the :class:`CoupledStates`; ``status`` is not 0 where no solution was found.
         """
-        given = np.asarray(creeps, dtype=np.float64)
+        given = np.asarray(creeps, dtype=float)
         found = np.empty((given.size, coupled_states.COLUMNS))
         # kernels take kappa delta, half of the reduced creepage, ascending
         order = np.argsort(given)

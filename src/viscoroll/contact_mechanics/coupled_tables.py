@@ -11,8 +11,6 @@ on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load
 it only through that ratio.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import sys
@@ -149,9 +147,8 @@ def tabulate(
     run_blocks(solve, len(work), 1, progress="coupled table: states" if progress else None)
     edges[len(work) :] = edges[0]
     fields[len(work) :] = fields[0]
-    made = CoupledRows(
-        mu=mu, u=lock_array(u), t=lock_array(t), edges=lock_array(edges), fields=lock_array(fields)
-    )
+    arrays = {"u": u, "t": t, "edges": edges, "fields": fields}
+    made = CoupledRows(mu, **{name: lock_array(each) for name, each in arrays.items()})
     made.errors.update(measure_errors(made, pair))
     return made
 
@@ -200,16 +197,24 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
         # kappa (Q delta - W_base - W_cylinder), from 2 kappa delta and works times 2 kappa
         friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
         if friction <= _STICKS:
-            middle = free
-            fields = _row_fields(row, middle, t)
             # nothing slips there, and Q and M are 0 exactly: errors of the solution, up to 5e-5 of
             # mu P, are larger than all loads of a slow motion, which they would drive
+            middle = free
+            fields = _row_fields(row, middle, t)
             rest = t.size // 2
             fields[rest, 0] = 0.0
-            _shift_moments(fields, -fields[rest, 1:3])
+            shift = -fields[rest, 1:3]
         else:
+            # elastic bodies lose energy in slip alone: else the error of the spline would drive a
+            # cylinder at rest, or keep it at rest; bodies that deform share the shift
             sides = {body.side for body in row.pair.bodies}
-            _hold_friction(t, fields, place=place, friction=friction, sides=sides)
+            deforms = np.array([side in sides for side in ("base", "cylinder")])
+            found = _spline(t, fields[:, 1:3] @ deforms, place)(place)
+            shift = np.where(deforms, (friction - found) / deforms.sum(), 0.0)
+        # M_b + W_b, what the body loses, stays: kappa M_b in columns 1 and 2, 2 kappa W_b in 6 and
+        # 7
+        fields[:, 1:3] += shift
+        fields[:, 6:8] -= 2.0 * shift
     return [middle, low, high, free], fields
 
 
@@ -220,37 +225,6 @@ def _row_fields(row: CoupledRow, middle: float, t: Floats) -> Floats:
     low, high = row.onsets()
     creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
     return _fields(row.states(creeps, t), creeps, row.u, row.mu)
-
-
-def _hold_friction(
-    t: Floats, fields: Floats, place: float, friction: float, sides: set[str]
-) -> None:
-    """Correct M of an elastic row so that in free rolling it equals the slip loss.
-
-    Elastic bodies lose energy in slip alone.  Without the correction the error of the spline would
-    drive a cylinder at rest, or keep it at rest.
-    t: nodes, in [-1, 1], (m,).
-    fields: fields of the row, (m, 8), of which M and the work of both bodies are changed.
-    place: t of free rolling.
-    friction: kappa times the moment of the slip loss there, >= 0.
-    sides: bodies that deform, of "base" and "cylinder", between which the shift is divided equally.
-    Returns None.
-    """
-    deforms = np.array([side in sides for side in ("base", "cylinder")])
-    found = float(_spline(t, fields[:, 1:3][:, deforms].sum(axis=1), place)(place))
-    _shift_moments(fields, np.where(deforms, (friction - found) / deforms.sum(), 0.0))
-
-
-def _shift_moments(fields: Floats, shifts: Floats) -> None:
-    """Add to kappa M of base and cylinder, and keep the loss of each body by changing its work.
-
-    fields: fields of the row, (m, 8), changed.
-    shifts: what is added to kappa M of each body, (2,).
-    Returns None.
-    """
-    # M_b + W_b, what the body loses, stays: kappa M_b in columns 1 and 2, 2 kappa W_b in 6 and 7
-    fields[:, 1:3] += shifts
-    fields[:, 6:8] -= 2.0 * shifts
 
 
 def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:
@@ -332,7 +306,7 @@ def measure_errors(
         worst[n] = np.abs(found - exact).max(axis=0)
 
     run_blocks(compare, speeds.size, 1)
-    return dict(zip(FIELDS, worst.max(axis=0).tolist(), strict=True))
+    return dict(zip(FIELDS, worst.max(axis=0).tolist()))
 
 
 # --- Tables of the coupled solution that are made at first use ---
@@ -341,6 +315,8 @@ def measure_errors(
 _KEPT = 256
 #: seconds that a table takes on two cores, for messages
 SECONDS = 3
+#: arrays of :class:`CoupledRows` in a file
+_ARRAYS = "u", "t", "edges", "fields"
 _lock = threading.Lock()
 
 
@@ -388,7 +364,7 @@ def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
     damaged = "the cached table of the coupled solution is damaged ({}) and is made again"
     if (found := load_kept(path, damaged, _read)) is None:
         found = tabulate(pair, mu, progress=not is_quiet() and sys.stderr.isatty())
-        arrays = {name: getattr(found, name) for name in ("mu", "u", "t", "edges", "fields")}
+        arrays = {name: getattr(found, name) for name in ("mu", *_ARRAYS)}
         save_kept(path, _KEPT, arrays | {"errors": [found.errors[name] for name in FIELDS]})
     return found
 
@@ -404,6 +380,6 @@ def _digest() -> str:
 
 def _read(data: Any) -> CoupledRows:
     """Return the table in the arrays of a file; raises KeyError and ValueError for what is none."""
-    u, t, edges, fields = (lock_array(data[name]) for name in ("u", "t", "edges", "fields"))
+    arrays = {name: lock_array(data[name]) for name in _ARRAYS}
     errors = dict(zip(FIELDS, data["errors"].tolist(), strict=True))
-    return CoupledRows(mu=float(data["mu"]), u=u, t=t, edges=edges, fields=fields, errors=errors)
+    return CoupledRows(float(data["mu"]), **arrays, errors=errors)

@@ -28,9 +28,7 @@ import numpy as np
 
 from ..core import Booleans, Floats, Integers, Scale
 from ..laws import evaluate_by_modes
-from ..laws.law_table import law_table
 from ..materials import Prony, total_series
-from .contact_table import pure_rolling_fields
 from .parameters import Parameters, refuse_cover, series_in_own_time
 
 # --- Free rolling of one material as splines over speed ---
@@ -198,7 +196,7 @@ class Curve:
         """
         longest = _SHORT * np.maximum(2.0 * distance, _CLIMB)
         W = np.zeros(u.shape)
-        for J, T in zip(*self.modes, strict=True):
+        for J, T in zip(*self.modes):
             # distance of the time T at the start, in half contact lengths at rest, which the motion
             # may be too short for; and the part of the creep that the standstill was too short for
             L = np.minimum(2.0 * u * T, longest)
@@ -222,33 +220,9 @@ def curve_of(material: float | Prony) -> Curve | None:
 
 # --- Free rolling by the law of steady rolling, and where it is accurate ---
 
-#: kappa |V| from which on every contact is in its limit of fast rolling, dimensionless.
-_FASTEST = 1e300
 #: Part of the energy, dimensionless, below which the lost distance is computed as proportional to
 #: the lost energy.
 _SMALL_LOSS = 1e-7
-
-
-class ContactLengths(NamedTuple):
-    """Lengths of the contact at a speed, dimensionless, numbers or arrays of one shape.
-
-    reach : distance from the axis to the leading edge, the far end of the contact, divided by R:
-    lam (1 + epsilon)/(2 kappa).
-    epsilon : shift towards the leading edge in half contact lengths, 0 at rest and for elastic
-    bodies.
-    lam : contact length divided by l0.
-    """
-
-    reach: Any
-    epsilon: Any
-    lam: Any
-
-    @classmethod
-    def of(cls, lam: Any, epsilon: Any, kappa: Any) -> ContactLengths:
-        """Return the lengths of contacts of given lam, epsilon and kappa = R/l0, numbers or arrays
-        that broadcast.
-        """
-        return cls(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
 
 
 class Reach(NamedTuple):
@@ -343,8 +317,8 @@ class FreeRolling:
             )
         else:
             pairs = (series_in_own_time(total_series(one)) for one in scene.material_array)
-            materials, unit = zip(*pairs, strict=True)
-            unit = np.array(unit, np.float64)
+            materials, unit = zip(*pairs)
+            unit = np.array(unit, float)
             index = np.arange(unit.size)
         gamma = np.nan if scene.gamma is None else scene.gamma
         with np.errstate(over="ignore"):
@@ -401,24 +375,9 @@ class FreeRolling:
             return
         order = np.argsort(self.index, axis=None, kind="stable")
         ends = np.searchsorted(self.index.ravel()[order], np.arange(len(self.materials) + 1))
-        for material, (first, last) in zip(self.materials, pairwise(ends), strict=True):
+        for material, (first, last) in zip(self.materials, pairwise(ends)):
             if last > first:
                 yield material, order[first:last]
-
-    def contact_lengths(self, kappa: Any) -> ContactLengths:
-        """Return the lengths of the contacts of the states at zero creepage, on which they do not
-        depend.
-
-        kappa: slenderness R/l0 of the scene, broadcasts with u.
-        Returns :class:`ContactLengths` (reach over R, epsilon, lam), dimensionless, in the shape of
-        u; numbers if u has no axes.
-        """
-        out = np.empty((2, self.u.size))
-        u = np.minimum(self.u.ravel(), _FASTEST)
-        for material, part in self._groups():
-            out[:, part] = pure_rolling_fields(law_table(material), u[part], "lam", "epsilon")
-        lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
-        return ContactLengths.of(lam, epsilon, kappa)
 
     def _evaluate(
         self, function: Callable[..., Sequence[Floats]], elastic: Sequence[float], *more: Any

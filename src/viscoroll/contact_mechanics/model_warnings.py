@@ -8,8 +8,6 @@ coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m
 moment over P R.
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect
 from collections.abc import Iterable

@@ -6,8 +6,6 @@ G on the speed turns M(V) = load into M(V) - G V = load, the same problem with a
 is dimensionless unless units are named; a law is a :class:`LawTable`, the rows of one material.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -72,15 +70,14 @@ class Branches:
     resistance : kappa (M - G V) at the nodes, (n,).
     extremum : whether a node is a local extremum of the curve, (n,).
     gain : G.
-    first, last : indices of the nodes at the ends of each branch, (branches,).
+    ends : indices of the nodes at the ends of the branches, (branches + 1,).
     """
 
     u: Floats
     resistance: Floats
     extremum: Booleans
     gain: float
-    first: Integers
-    last: Integers
+    ends: list[int]
 
     @cached_property
     def curve(self) -> Any:
@@ -113,7 +110,7 @@ class Branches:
         indices = []
         nodes = []
         tolerance = EXTREMUM_RTOL * np.abs(load)
-        for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
+        for first, last in pairwise(self.ends):
             values = self.resistance[first : last + 1]
             rising = values[-1] > values[0]
             low, high = (values[0], values[-1]) if rising else (values[-1], values[0])
@@ -217,14 +214,13 @@ def branches(law: LawTable, gain: float) -> Branches:
     # extrema were put behind the nodes
     is_flat = order >= u.size
     u = whole[order]
-    ends = np.concatenate([[0], np.flatnonzero(is_flat), [u.size - 1]])
+    ends = [0, *np.flatnonzero(is_flat).tolist(), u.size - 1]
     return Branches(
         u=u,
         resistance=_curve(law, gain, u)[0],
         extremum=is_flat,
         gain=gain,
-        first=ends[:-1].copy(),
-        last=ends[1:].copy(),
+        ends=ends,
     )
 
 
@@ -243,7 +239,7 @@ def speed_nodes(law: LawTable) -> Floats:
     densities = _FAR_NODES, _CLOSE_NODES, _FAR_NODES
     parts = [
         np.linspace(start, stop, (stop - start) * density, endpoint=False)
-        for (start, stop), density in zip(pairwise(ends), densities, strict=True)
+        for (start, stop), density in zip(pairwise(ends), densities)
     ]
     return np.concatenate([*parts, ends[-1:]])
 
@@ -270,8 +266,8 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
     signed = np.abs(values) > noise
     _, zeros, _ = zeros_between(
         lambda x, _: function(x),
-        nodes[np.newaxis, signed],
-        values[np.newaxis, signed],
+        nodes[None, signed],
+        values[None, signed],
         np.broadcast_to(noise, nodes.shape)[signed],
     )
     return zeros

@@ -28,8 +28,6 @@ dM_half_space_dV and dM_cylinder_dV; :class:`.steady_states.States` have omega a
 in place of the slopes.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Any, NamedTuple

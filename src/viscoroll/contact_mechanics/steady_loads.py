@@ -19,8 +19,6 @@ other one the speeds.  Where friction does not suffice, the part of the load tha
 is returned, and the state does not exist.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -292,7 +290,7 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
             parts.append(
                 (np.full(zeros.size, n), np.full(zeros.size, sign), np.exp2(zeros) / kappa)
             )
-    load, signs, speeds = (np.concatenate(each) for each in zip(*parts, strict=True))
+    load, signs, speeds = (np.concatenate(each) for each in zip(*parts))
     return load, signs, speeds
 
 
@@ -414,8 +412,7 @@ def balance(
     from ..kernels.law.spline_law import balance_loop
 
     kappa, mu = (
-        np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=np.float64)
-        for each in contacts[1:]
+        np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=float) for each in contacts[1:]
     )
     table = contacts.law.record.table
     out = np.empty((V.size, 2))
@@ -475,7 +472,7 @@ def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     law, kappa, mu = contacts
     # moments are times kappa
     found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
-    fields = dict(zip(FIELDS, found.T, strict=True))
+    fields = dict(zip(FIELDS, found.T))
     omega_over_V = 1.0 + delta
     half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
     cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V

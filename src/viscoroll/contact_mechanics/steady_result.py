@@ -4,8 +4,6 @@ P is the load that presses the cylinder on its base, R its radius, T_ref the uni
 R/l0 with the contact length at rest l0, and mu the coefficient of friction.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -131,7 +129,7 @@ class Diagnosis(NamedTuple):
         total = at_rest * load
         (own, V, Q) = self.states
         if (own == n).any():  # the state that asks for the least friction
-            V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
+            V, Q = min(zip(V[own == n], Q[own == n]), key=lambda each: abs(each[1]))
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 beyond = f"{at} any omega beyond the stick limit is steady"
@@ -339,9 +337,7 @@ class Steady(Equilibria):
         for name in (found.keys() & DIMENSIONS.keys()) if scale.si else ():
             unit = scale[name]
             # in place of append_axis, whose calls take longer here than the rest
-            found[name] = found[name] * (
-                unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
-            )
+            found[name] = found[name] * (unit[..., None] if isinstance(unit, np.ndarray) else unit)
         # the unit of all three, 1/s of a cylinder
         fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
         eigenvalues = np.empty((*fast.shape, 2), np.complex128)
@@ -459,14 +455,14 @@ class Steady(Equilibria):
             "rate_fast": rates[0],
             "rate_slow": rates[1],
         }
-        return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
+        return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values())))
 
 
 def append_axis(unit: Any) -> Any:
     """Return the ``unit`` of each load, (loads...), with a last axis of length 1 for its
     equilibria; a number as it is.
     """
-    return unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
+    return unit[..., None] if isinstance(unit, np.ndarray) else unit
 
 
 def pad(rows: Floats, number: Integers, count: Integers, shape: tuple[int, ...]) -> Floats:

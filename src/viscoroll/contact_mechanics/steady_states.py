@@ -444,7 +444,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     (star, lam, rise) = free[2:]
     faster = V / root
-    rolling = delta_0 if law.cover is None else contacts.free_creep(faster)
+    rolling = contacts.free_creep(faster)
     less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")
     # the formula of the module; for a small Q its difference is rounding, and |Q| over the slope
     # ``rise`` = dQ/ddelta at Q = 0 takes its place
@@ -459,10 +459,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     rows[Field.Q] = Q
     rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
     rows[Field.BETA] = root * less_lam / lam
-    if not exists.all():
-        missing = (~exists).nonzero()[0]
-        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DDELTA]], missing] = 0.0
-        rows[Field.DELTA, missing] = np.nan
+    rows[Field.DELTA, ~exists] = np.nan
     return States.of(
         loads, load, sign=sign, answers=rows, free=None if law.cover is None else free[:2]
     )

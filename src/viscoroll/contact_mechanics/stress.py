@@ -8,8 +8,6 @@ over half the length, beta the part of it that sticks, zeta half the transit tim
 time of the material, alpha the instantaneous over the long-time modulus.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from itertools import pairwise
@@ -81,7 +79,7 @@ class _States:
             "V": V,
             "omega" if creep_is_omega else "delta": creep,
         }
-        arrays = {name: np.asarray(value, np.float64) for name, value in arrays.items()}
+        arrays = {name: np.asarray(value, float) for name, value in arrays.items()}
         self.shape = broadcast_shape(**arrays)
         refuse_overflow(arrays["kappa"], arrays["V"])
         self.kappa, self.mu, self.V, given = (
@@ -367,13 +365,11 @@ def _stress_of_law(
     alpha = (
         scene.alpha
         if scene.material_array is None
-        else np.arange(len(scene.material_array), dtype=np.float64)
+        else np.arange(len(scene.material_array), dtype=float)
     )
     # first the fields of Points in their order; an array of materials has their indices for alpha
     state = (scene.kappa, scene.mu, lam, epsilon, beta, zeta, alpha)
-    arrays = [
-        np.asarray(value, np.float64) for value in (x, *state, mirror, np.sign(delta) * mirror)
-    ]
+    arrays = [np.asarray(value, float) for value in (x, *state, mirror, np.sign(delta) * mirror)]
     shape = broadcast_shape(x=x, V=arrays[3])  # lam has the shape of the states
     read_x, *readers, read_alpha, read_mirror, read_sign = (
         block_reader(array, shape) for array in arrays

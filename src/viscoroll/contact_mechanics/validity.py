@@ -25,8 +25,8 @@ from .assumptions import (
     assess_small_contact,
     largest,
 )
-from .contact_table import evaluate_contact
-from .free_rolling import ContactLengths, FreeRolling, Reach, Start
+from .contact_table import FASTEST, evaluate_contact
+from .free_rolling import FreeRolling, Reach, Start
 from .parameters import Parameters, Roller, resolve_model
 
 # --- Whether the law of steady rolling may drive a motion, and down to which speed ---
@@ -256,7 +256,7 @@ class Steadiness(Assumption):
         left = np.asarray(self.ten_percent.left)
         whole = np.asarray(self.whole)
         return np.divide(
-            left, whole, out=np.asarray(self.value > STEADY_LIMIT, np.float64), where=left < whole
+            left, whole, out=np.asarray(self.value > STEADY_LIMIT, float), where=left < whole
         )[()]
 
 
@@ -340,8 +340,6 @@ _ERROR = (0.064, 0.058, 0.046, 0.029, 0.018, 0.011)
 _LEAST_SHEAR_ERROR = 0.02
 #: Error of Q divided by mu P and by the value of the assumption ``traction``, beside both.
 _SHEAR_ERROR = 0.4
-#: Creepage far above any delta_star, for full slip.
-_FULL_SLIP = 1e6
 
 
 def stated_error(thickness: float) -> float:
@@ -355,33 +353,24 @@ def stated_error(thickness: float) -> float:
     return float(np.interp(thickness, _THICKNESS, _ERROR))
 
 
-def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]:
-    """Return the lengths of the contact on a cover, and the assumption ``thick``.
+def assess_cover(scene: Parameters, lam: Any) -> Assumption:
+    """Return the assumption ``thick`` of the contact on a cover.
 
-    scene: dimensionless parameters of a roller with a cover, or with an array of covers; material
-    and kappa are used.
-    V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.
-    Returns (:class:`ContactLengths`: reach over R, epsilon, lam; the assumption, whose value is
-    half the contact length divided by the thickness of the thinner layer; it holds where that of
-    each layer is at most the limit for its Poisson's ratio, from 3 at nu = 0 to 1.25 at nu = 1/2,
-    up to which one stick zone in front with slip behind is right at every creepage).  Both have the
-    broadcast shape.  The sentence states the thickness of the thinnest cover, and the limit for the
-    cover whose limit is lowest.
-    Raises ParameterError for kappa |V| above 1e300, shapes that do not broadcast, and a layer too
-    thin for its law.
+    scene: dimensionless parameters of a roller with a cover, or with an array of covers.
+    lam: contact lengths divided by l0, an array of any shape, which broadcasts with the scene.
+    Returns the assumption, whose value is half the contact length divided by the thickness of the
+    thinner layer, in the broadcast shape; it holds where that of each layer is at most the limit
+    for its Poisson's ratio, from 3 at nu = 0 to 1.25 at nu = 1/2, up to which one stick zone in
+    front with slip behind is right at every creepage.  The sentence states the thickness of the
+    thinnest cover, and the limit for the cover whose limit is lowest.
     """
     cover = scene.cover
     assert cover is not None
-    state = evaluate_contact(
-        scene, np.abs(V), creep=np.zeros(()), creep_is_omega=False, names=("lam", "epsilon")
-    )
-    half = 0.5 * state["lam"]
+    half = 0.5 * lam
     thickness = float(np.min(cover.thinnest))
     layers = [(nu, h) for _, nu, h in map(cover.body, ("cylinder", "base")) if h is not None]
     limits = [np.interp(nu, _NU, _MOST_THETA) for nu, _ in layers]
-    holds = np.all(
-        [half / h <= limit for (_, h), limit in zip(layers, limits, strict=True)], axis=0
-    )
+    holds = np.all([half / h <= limit for (_, h), limit in zip(layers, limits)], axis=0)
     theta = half / cover.thinnest
     sentence = (
         f"h/l0 = {thickness:.3g}: half the contact length is up to "
@@ -390,9 +379,7 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
         "allowed, where the contact "
         "sticks in front and slips behind (beyond: method='coupled')"
     )
-    return ContactLengths.of(state["lam"], state["epsilon"], scene.kappa), Assumption(
-        holds, theta, sentence
-    )
+    return Assumption(holds, theta, sentence)
 
 
 def assess_traction(scene: Parameters, V: Any) -> Assumption:
@@ -412,24 +399,20 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     Returns the assumption, whose value is 2 |delta_0* - delta_0|/delta_star, in the broadcast
     shape.  It holds for any value where the law is a table of the coupled solution; the sentence
     then states what the errors would be without it.
-    Raises ParameterError as :func:`assess_cover`.
+    Raises ParameterError for kappa |V| above 1e300, shapes that do not broadcast, and a layer too
+    thin for its law.
     """
     cover = scene.cover
     assert cover is not None
-    names = ("delta_0", "delta_star", "M_half_space", "M_cylinder")
-    forth, back = (
-        evaluate_contact(
-            scene.uncoupled, np.abs(V), creep=np.full((), slip), creep_is_omega=False, names=names
-        )
-        for slip in (_FULL_SLIP, -_FULL_SLIP)
-    )
-    # in full slip Q = +-mu: half the difference of M is what shear adds, over mu the strain
-    change = {name: 0.5 * (back[name] - forth[name]) / scene.mu for name in names[2:]}
-    free = forth["delta_0"]
-    star = forth["delta_star"]
+    by_base, by_cylinder, free, star = evaluate_contact(
+        scene.uncoupled,
+        np.abs(V),
+        creep=np.zeros(()),
+        creep_is_omega=False,
+        names=("excess_half_space", "excess_cylinder", "delta_0", "delta_star"),
+    ).values()
     # the law limits the excess x in units of delta_star/2 to x/(1 + x^4)^(1/4)
-    excess = change["M_half_space"] + (1.0 + free) * change["M_cylinder"] - free
-    limited = np.minimum(2.0 * np.abs(excess) / star, 1.0)
+    limited = np.minimum(2.0 * np.abs(by_base + (1.0 + free) * by_cylinder) / star, 1.0)
     with np.errstate(divide="ignore"):
         value = limited / (1.0 - limited**4) ** 0.25
     error = stated_error(float(np.min(cover.thinnest))) + _LEAST_SHEAR_ERROR
@@ -514,31 +497,36 @@ def validity(
     law = scene.uncoupled  # no table is made for a report
     if scene.cover is None:
         free = FreeRolling.of_scene(law, speed)
-        lengths = free.contact_lengths(scene.kappa)
-        steady = UNKNOWN.steady if scene.gamma is None else Steadiness.of(free.scaled(scale))
-        report = UNKNOWN._replace(steady=steady)
-    else:
-        lengths, thick = assess_cover(law, speed)
+        report = UNKNOWN
+        if scene.gamma is not None:
+            report = UNKNOWN._replace(steady=Steadiness.of(free.scaled(scale)))
+        # beyond the fastest speed every contact is in its limit of fast rolling
+        fastest = 0.5 * FASTEST / scene.kappa
+        speed = np.clip(speed, -fastest, fastest)
+    lam, epsilon, full_slip = evaluate_contact(
+        law,
+        speed,
+        creep=np.zeros(()) if spin is None else spin,
+        creep_is_omega=spin is not None,
+        names=("lam", "epsilon", "full_slip"),
+    ).values()
+    if scene.cover is not None:
         report = UNKNOWN._replace(
-            steady=UNKNOWN_OF_COVERS, thick=thick, traction=assess_traction(scene, speed)
+            steady=UNKNOWN_OF_COVERS,
+            thick=assess_cover(scene, lam),
+            traction=assess_traction(scene, speed),
         )
     report = report._replace(
-        small_contact=assess_small_contact(lengths.reach),
-        under_axis=assess_position(lengths.epsilon),
+        small_contact=assess_small_contact(lam * (1.0 + epsilon) / (2.0 * scene.kappa)),
+        under_axis=assess_position(epsilon),
     )
     if spin is not None:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
-        # delta_star of half-spaces is mu lam (1 + epsilon)/(2 kappa)
-        full = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
-        if scene.cover is not None:
-            full = evaluate_contact(
-                law, speed, creep=spin, creep_is_omega=True, names=("full_slip",)
-            )["full_slip"]
-        report = report._replace(creep=assess_creep(delta, full))
+        report = report._replace(creep=assess_creep(delta, full_slip))
     if roller.body_data is not None:
         return roller.body_data.extend_validity(
-            report, lengths.lam, V=given["V"], omega=given.get("omega"), density=density
+            report, lam, V=given["V"], omega=given.get("omega"), density=density
         )
     if density is not None:
         sentence = "density needs a Cylinder: a Scene has no wave speed"

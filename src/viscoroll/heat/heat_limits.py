@@ -8,8 +8,6 @@ material; turning points are the extrema of that speed over the temperature.
 :func:`warming` integrates the balance of heat over time.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import pairwise
@@ -149,12 +147,12 @@ def heat_limit(
         refuse_arrays(roller, scene, ("alpha",))
         # one state at a time: the load changes the contact length, and with it the law of a cover
         limits = np.vectorize(
-            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
+            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one))),
             otypes=[float, float, bool],
         )
         rows = limits(*arrays.values())
     names = ("V" if name == "load" else "load", "temperature", "runaway")
-    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows, strict=True)}
+    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows)}
     return Values(found, arrays, si=True, title="Limits by heat", labels=labels)
 
 
@@ -531,7 +529,7 @@ def warming(
 
     # temperatures, then heat and heat given off since t = 0, of all states
     y = np.concatenate([theta, np.zeros(2 * theta.size)])
-    parts = [y[:, np.newaxis]] if times[0] == 0.0 else []
+    parts = [y[:, None]] if times[0] == 0.0 else []
     last = times[-1]
     for span in pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
         own = times[(times > span[0]) & (times <= span[1])]
@@ -563,7 +561,7 @@ def warming(
     values = {name: rows[name] for name in ("temperature", "V", "C_rr", "M", "loss")}
     values |= {"heat": heat, "given_off": off}
     about = {"t": times} | {
-        name: np.asarray(plain[name])[..., np.newaxis]
+        name: np.asarray(plain[name])[..., None]
         for name in ("ambient", "conductance")
         if np.ndim(plain[name])
     }

@@ -9,8 +9,6 @@ The law of a pair depends on kappa V a_T of one body and on the ratio of both ti
 pair of temperatures has a law of its own, of which the rows are made where they are read.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from functools import lru_cache, partial
@@ -187,13 +185,13 @@ def zeros_of(
         around = ambient[first : first + _BLOCK]
         # a margin of 1 K, so that a zero at either end lies between nodes
         nodes = curve.nodes(around.min() - 1.0, hottest[first : first + _BLOCK].max() + 1.0)
-        rise = nodes - around[:, np.newaxis]
+        rise = nodes - around[:, None]
         k = np.repeat(np.arange(around.size), nodes.size)
         f = balance(rise.ravel(), k).reshape(rise.shape)
         # stable where f falls
         n, zero, stable = zeros_between(balance, rise, f)
         parts.append((first + n, around[n] + zero, stable))
-    n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
+    n, theta, stable = (np.concatenate(each) for each in zip(*parts))
     found = theta <= hottest[n]
     return Zeros(n[found], theta[found], stable[found])
 
@@ -571,7 +569,7 @@ def pair_temperatures(
     if not speed:
         raise described_error("V", "is 0, where the bodies do not heat", "other than 0")
     curves = [shift_curve(body) for body in (pair.cylinder, pair.half_space)]
-    for at, curve in zip(around, curves, strict=True):
+    for at, curve in zip(around, curves):
         check_ambient(at, curve, "ambient")
     load = roller.load  # type: ignore[attr-defined]
     kappa = scene.kappa
@@ -585,7 +583,7 @@ def pair_temperatures(
         E', and the dimensionless speed is V T_ref/R with the T_ref of the warm pair.  mu is 1: any
         will do, since no shear acts.
         """
-        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
+        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta)))
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
@@ -599,21 +597,19 @@ def pair_temperatures(
 
     def rest(theta: Any) -> Floats:
         """Return ambient + loss/conductance - theta of each body, K, (2, m): 0 in balance."""
-        return around[:, np.newaxis] + losses(theta) / off[:, np.newaxis] - theta
+        return around[:, None] + losses(theta) / off[:, None] - theta
 
     def slopes(theta: Any) -> Floats:
         """Return the Jacobian of ``rest`` at temperatures of both, (2, 2)."""
-        values = rest(
-            theta[:, np.newaxis] + _DIFFERENCE * np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-        )
+        values = rest(theta[:, None] + _DIFFERENCE * np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))
         return (values[:, 1:] - values[:, :1]) / _DIFFERENCE
 
     axes = []
-    for at, G, curve in zip(around, off, curves, strict=True):
+    for at, G, curve in zip(around, off, curves):
         # the loss of a body is at most P |V|/(2 kappa)
         hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
         ends = np.log2(curve.at(np.array([at, hottest]))[0])
-        axes.append(curve.temperature_of(np.linspace(float(ends[0]), float(ends[1]), _NODES)))
+        axes.append(curve.temperature_of(np.linspace(ends[0], ends[1], _NODES)))
     grid = np.array(np.meshgrid(*axes, indexing="ij"))
     F = rest(grid.reshape(2, -1)).reshape(grid.shape) > 0.0
     # (2 balances, cells, cells, 2, 2): cells in which each balance has both signs at the corners
@@ -621,12 +617,12 @@ def pair_temperatures(
     cells = (corners.any(axis=(3, 4)) & ~corners.all(axis=(3, 4))).all(axis=0)
     found: list[Any] = []
     for start in 0.5 * (grid[:, :-1, :-1] + grid[:, 1:, 1:])[:, cells].T:
-        at = root(lambda theta: rest(theta[:, np.newaxis])[:, 0], start, jac=slopes, tol=1e-14).x
-        good = np.abs(rest(at[:, np.newaxis])).max() <= _RESIDUAL * np.abs(at - around).max()
+        at = root(lambda theta: rest(theta[:, None])[:, 0], start, jac=slopes, tol=1e-14).x
+        good = np.abs(rest(at[:, None])).max() <= _RESIDUAL * np.abs(at - around).max()
         if good and all(np.abs(at - other).max() > _SAME for other in found):
             found.append(at)
     theta = np.array(sorted(found, key=tuple)).reshape(-1, 2)
     loss = losses(theta.T).T
     # capacity dtheta/dt is conductance times ``rest``, of both bodies with one capacity
-    rates = [np.linalg.eigvals(off[:, np.newaxis] * slopes(at)).real.max() for at in theta]
+    rates = [np.linalg.eigvals(off[:, None] * slopes(at)).real.max() for at in theta]
     return PairTemperatures(theta, np.array(rates) < 0.0, loss.sum(axis=1) / (load * speed), loss)

@@ -37,8 +37,6 @@ The eleven quantities of a node, in the order of the indices below, are
 All are dimensionless (:mod:`.cover_law` has the formulas in which they enter).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
@@ -99,7 +97,7 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     local = local_pressure(modes, z, state) if any(body.local for body in modes.bodies) else None
     s, excess = _sources(modes, z, state, local)
     # L and T - L together: the layers' tangential displacement by shear
-    S, c = layer_operator(state.A, state.memory, (modes.L + modes.shear) * state.own / state.both)
+    S, c = layer_operator(state.A, state.memory, (modes.L + modes.shear) * state.part)
     Phi = 2.0 * state.exponentials.ratio[1:]
     # the strain C p of each body, which the traction of stick takes back, (N, 2)
     right = Phi @ (state.Xi @ excess) + s[1:]
@@ -110,7 +108,7 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     # slopes by Q p are those that the pressure of -C p takes back
     change = np.linalg.solve(state.matrix, -right.sum(axis=1))
     # the change is one of pressure: normal displacements again, without T - L
-    S, c = layer_operator(state.A, state.memory, modes.L * state.own / state.both)
+    S, c = layer_operator(state.A, state.memory, modes.L * state.part)
     shift = _shift(modes, state, c @ change + excess.sum(axis=1)) + S[0] @ change + s[0].sum()
     # H = z q_1, at the same z
     load = float(change[0] / state.q[0])
@@ -154,9 +152,7 @@ def _sources(
     Returns (terms from n = 0, (N + 1, 2); excess memory, (modes, 2)).
     """
     A = state.A
-    # odd + i even is i times the transform even - i odd of the pressure
-    # (:func:`.cover_solve.solve`)
-    F = modes.mine * (modes.C * state.own / state.both * (state.odd + 1j * state.even))
+    F = modes.mine * (modes.C * state.part * state.transform)
     s = 2.0 * np.where(np.arange(len(A))[:, None] % 2, -(A @ F.imag.T), A @ F.real.T)
     s[0] *= 0.5
     excess = (state.memory @ F.T).real
@@ -181,7 +177,7 @@ def _mirrored(modes: CoverModes, state: CoverState, local: LocalPressure | None)
     """
     # the square of the transform, where the mean itself has that of its magnitude: it is the
     # mirrored one
-    strain = modes.C * (state.own * (state.odd + 1j * state.even) ** 2).real / state.v
+    strain = modes.C * (state.own * state.transform**2).real / state.v
     found = -2.0 / state.q[0] * (modes.mine @ strain)
     return found if local is None else found - local.mirrored
 
@@ -198,11 +194,11 @@ def _moments(modes: CoverModes, z: float, state: CoverState) -> Floats:
     """
     # what all layers change in the slopes by the pressure; a body moves by its part of the
     # compliance
-    total = modes.L * state.own / state.both
+    total = modes.L * state.part
     multipliers = (
         modes.mine * (modes.L * state.own) + (modes.shares[:, None] - state.compliance) * total
     )
-    smooth = 2.0 / state.q[0] * (multipliers.imag @ ((state.odd**2 + state.even**2) / state.v))
+    smooth = 2.0 / state.q[0] * (multipliers.imag @ (np.abs(state.transform) ** 2 / state.v))
     if not modes.J.size:
         # elastic bodies dissipate nothing
         return 0.0 * smooth
@@ -268,6 +264,8 @@ _OFFSET = 3e-5
 #: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row
 #: in 1/u
 _FAST_OCTAVES = 4
+#: factor of the speed from which on rolling is fast: above rounding, below any change of the rows
+_OVER = 1.0 + 1e-9
 #: octaves of rows beyond those, after which the first order in 1/u is accurate to rounding
 _BEYOND = 42
 #: nodes of the polynomials at either end, from 0.05 to 1 of their range: wide enough for the noise
@@ -342,15 +340,12 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     # the contact is longest at rest: all nodes have the number of terms that it needs
     orders = max(LEAST_TERMS, term_count(0.5 * slow_limit[_LAM] / thickness))
     e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
-    widest = (
-        cover.thickness
-        if cover.other_thickness is None
-        else max(cover.thickness, cover.other_thickness)
-    )
+    widest = max(cover.thickness, cover.other_thickness or 0.0)
     widest *= 1.0 if thickest is None else thickest / cover.thickness
     # rolling is fast where even the shortest time is long beside the transit of l0, or of a length
-    # of the thicker layer
-    last = math.frexp(modes.series.a[-1] * max(1.0, widest))[1] + _FAST_OCTAVES
+    # of the thicker layer; by a little more than that, for covers of one ``thickest`` to have as
+    # many rows in spite of rounding
+    last = math.frexp(modes.series.a[-1] * max(1.0, widest) * _OVER)[1] + _FAST_OCTAVES
     first_node = e0 * PER_OCTAVE - _END_NODES + 1
     # the last of the slow 52 nodes is 2^e0, the first of the fast ones 2^last
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)

@@ -113,9 +113,10 @@ class CoverState(NamedTuple):
     What not every result needs:
     v : wave numbers times half the contact length at the nodes of the rule, (n,).
     A : signed Bessel functions there, (N + 1, n).
-    compliance : complex compliance of each body there, (2, n); both : that of both, own : that of
-    the body to which a node belongs, (n,).
-    odd, even : terms of the transform of the pressure, divided by pi z, times v, (n,).
+    compliance : complex compliance of each body there, (2, n); own : that of the body to which a
+        node belongs, part : that divided by the compliance of both, (n,).
+    transform : of the pressure, divided by pi z, times v, with the factor -i: its odd terms, and
+        its even ones as imaginary part, (n,).
     memory : excess memory of exp(i v x), (modes, n).
     exponentials : :class:`Exponentials`.
     matrix : of the system for q, (N, N).
@@ -133,10 +134,9 @@ class CoverState(NamedTuple):
     v: Floats
     A: Floats
     compliance: Any
-    both: Any
     own: Any
-    odd: Floats
-    even: Floats
+    part: Any
+    transform: Any
     memory: Any
     exponentials: Exponentials
     matrix: Floats
@@ -207,7 +207,7 @@ class CoverModes:
             )
             if thickness is not None:
                 nodes = layer_nodes(nu)
-                mine = np.full(nodes.u.size, name == "base", np.float64)
+                mine = np.full(nodes.u.size, name == "base", float)
                 kernels.append(
                     # u is the wave number times the thickness, and the thickness is over l0
                     [nodes.u / thickness, nodes.L, nodes.shear, sign * nodes.C, mine, 1.0 - mine]
@@ -468,7 +468,7 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     k = v / z
     compliance = np.array([_compliance(body.instant, body.J, body.b, k) for body in modes.bodies])
     own = (modes.mine * compliance).sum(axis=0)
-    J = compliance.sum(axis=0)
+    part = own / compliance.sum(axis=0)
     exponentials = evaluate_exponentials(modes, z, N)
     ratio, root, edge, x, sigma = exponentials
     _, b, e, t, _, Q = modes.series
@@ -476,7 +476,7 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     Xi = (e / root)[:, None] * x[:, 1:] * sigma
     D = decays(b * z, N)
     memory = _excess_memory(v, A, b * z, D)
-    S, c = layer_operator(A, memory, modes.L * own / J)
+    S, c = layer_operator(A, memory, modes.L * part)
     Phi = 2.0 * ratio[1:]
     right = Phi @ X0
     # q_1 = z alone is the pressure of Hertz
@@ -491,11 +491,10 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     shift = shares.sum() + S[0] @ q
     # transform of the pressure divided by pi z, times v: its even and odd terms
     mq = np.arange(1, N + 1) * q
-    odd = mq[::2] @ A[1::2]
-    even = mq[1::2] @ A[2::2]
+    transform = mq[::2] @ A[1::2] + 1j * (mq[1::2] @ A[2::2])
     # that of half-spaces, F = z + g, and what the shear of full slip adds at the front edge x = 1
     # as T and L differ
-    limit = z + shift + np.sum((modes.shear * own * (even - 1j * odd) * np.exp(1j * v)).real)
+    limit = z + shift + np.sum((modes.shear * own * transform * np.exp(1j * v)).imag)
     return CoverState(
         load=z * q[0],
         shift=shift,
@@ -508,10 +507,9 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
         v=v,
         A=A,
         compliance=compliance,
-        both=J,
         own=own,
-        odd=odd,
-        even=even,
+        part=part,
+        transform=transform,
         memory=memory,
         exponentials=exponentials,
         matrix=matrix,

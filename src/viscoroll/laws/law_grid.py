@@ -8,8 +8,6 @@ Splines are tensor splines by scipy (:func:`fit_spline`), which are packed into 
 compiled code reads (:func:`pack_spline`, ``kernels.splines``).
 """
 
-from __future__ import annotations
-
 import io
 import math
 from collections.abc import Iterator
@@ -67,13 +65,11 @@ class LawGrid:
 
     Attributes
     ----------
-    rows : :class:`.law_rows.CoupledRows` of V and delta, for kappa = 1: Q divided by its
-        limit (Q itself if the limit is not known) and M, in the units of the grid.
-    most : largest abs(Q); 1 where it is not known.
-    V : slowest and fastest speed, > 0; dimensionless, or m/s.
-    delta : lowest and highest creep ratio (omega R - V)/V.
-    slips : whether the contact slips fully at both ends of delta, at every speed: abs(Q) is at
-        least 1 - 1e-5 of its limit there, and so is known beyond the ends.  False without a mu.
+    rows : :class:`.law_rows.CoupledRows` of V and delta, for kappa = 1: ``mu`` is the largest
+        abs(Q), 1 where it is not known, Q is divided by it, and M has the units of the grid;
+        ``slips`` says whether the contact slips fully at both ends of delta, at every speed: abs(Q)
+        is at least 1 - 1e-5 of its limit there, and so is known beyond the ends.  False without a
+        mu.
     R : radius in m; 1 for a dimensionless grid.
     load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
     title : title of the file; "of another program" without one.
@@ -81,10 +77,6 @@ class LawGrid:
     """
 
     rows: CoupledRows
-    most: float
-    V: tuple[float, float]
-    delta: tuple[float, float]
-    slips: bool
     R: float
     load: float
     title: str
@@ -103,7 +95,7 @@ class LawGrid:
         """
         if self.kappa is not None and abs(kappa - self.kappa) > _ROUNDING * self.kappa:
             raise ParameterError("kappa", kappa, f"{self.kappa:g}, for which the grid was computed")
-        if not self.slips:
+        if not self.rows.slips:
             allowed = "states mu (in SI units with a load), and slips fully at both ends of delta"
             raise ParameterError("material", repr(self), f"a grid that {allowed}")
         # rows hold M in N for kappa = 1: a table has kappa M/(P R)
@@ -115,7 +107,7 @@ class LawGrid:
         u = kappa / self.R * self.rows.u
         edges = kappa * self.rows.edges
         rows = replace(
-            self.rows, mu=self.most / self.load, u=u, edges=edges, fields=fields, fastest=u[-1]
+            self.rows, mu=self.rows.mu / self.load, u=u, edges=edges, fields=fields, fastest=u[-1]
         )
         # the material is not known: alpha = 1 stands for it
         return coupled_table(1.0, rows)
@@ -129,9 +121,12 @@ class LawGrid:
             infinite or NaN delta, and numpy gives a RuntimeWarning.
         omega: angular velocity in the unit of the grid, likewise.
         """
-        if np.abs(V) > self.V[1]:
-            raise OutOfTableError("V", float(V), -self.V[1], self.V[1])
-        raise OutOfTableError("delta", float(np.divide(omega * self.R - V, V)), *self.delta)
+        fastest = self.rows.fastest
+        if np.abs(V) > fastest:
+            raise OutOfTableError("V", float(V), -fastest, fastest)
+        # 2 kappa times the ends of delta, with kappa = 1
+        low, high = 0.5 * self.rows.edges[0, 1:3]
+        raise OutOfTableError("delta", float(np.divide(omega * self.R - V, V)), low, high)
 
 
 def friction_limit(attributes: Any) -> float:
@@ -244,7 +239,7 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
     """
     if bad.any():
         first = np.argwhere(bad)[0]
-        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first, strict=True))
+        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first))
         found = (
             f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at "
             f"{place or variable.name}"
@@ -285,7 +280,7 @@ def _valid_range(variable: DataArray) -> Floats:
     """
     low, high = variable.attrs.get("valid_range", (-np.inf, np.inf))
     limits = (variable.attrs.get("valid_min", low), variable.attrs.get("valid_max", high))
-    packed = np.array([np.asarray(limit, np.float64).item() for limit in limits])
+    packed = np.array([np.asarray(limit, float).item() for limit in limits])
     factor = variable.encoding.get("scale_factor", 1.0)
     # a negative factor exchanges low and high
     return np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
@@ -412,7 +407,7 @@ def _in_si(table: Dataset) -> Dataset:
             elif given["V"] == "1":
                 allowed += ", since V has no unit"
             raise ParameterError(f"unit of {name}", unit, allowed) from error
-        table = table.assign({name: table[name].astype(np.float64) * by})
+        table = table.assign({name: table[name].astype(float) * by})
     if given["V"] == "1":
         return table.assign_attrs(R=1.0, load=1.0)
     # the load is needed only to make a limit of mu
@@ -430,14 +425,14 @@ def _law_of(table: Dataset) -> LawGrid:
 
     table: dataset of a grid at one alpha, in SI units or dimensionless; without M_half_space or
         M_cylinder that body has half of M.
-    Returns the :class:`LawGrid`, whose ends of V and delta are those of the axes; without the
-    attribute ``mu`` Q is not clipped and ``slips`` is False.
+    Returns the :class:`LawGrid`; without the attribute ``mu`` Q is not clipped and ``slips`` is
+    False.
     Raises KeyError for a missing variable, and ValueError, of which ParameterError is one, for
     values that are not finite, speeds that are not positive, axes that do not increase or have a
     single node, other dimensions, or an R, or a mu and load, that are no finite numbers > 0.
     """
     V = check_array("V", table["V"].values, above=0.0)
-    delta = table["delta"].values.astype(np.float64)
+    delta = table["delta"].values.astype(float)
     limit = friction_limit(table.attrs)
     most = limit if limit < np.inf else 1.0
     Q = table["Q"].transpose("V", "delta").values
@@ -468,10 +463,6 @@ def _law_of(table: Dataset) -> LawGrid:
     )
     return LawGrid(
         rows=rows,
-        most=most,
-        V=(V[0], V[-1]),
-        delta=(delta[0], delta[-1]),
-        slips=slips,
         R=check_number("R", table.attrs["R"], above=0.0),
         load=float(table.attrs.get("load", 1.0)),
         title=str(table.attrs.get("title", "of another program")),
@@ -538,7 +529,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     from ..kernels.law.spline_law import TERMS
 
     edges = knots[degree : knots.size - degree]
-    of = np.arange(edges.size - 1)[:, np.newaxis]
+    of = np.arange(edges.size - 1)[:, None]
     own = np.arange(degree + 1)
     basis = np.zeros((edges.size - 1, TERMS, TERMS))
     every = BSpline(knots, np.eye(knots.size - degree - 1), degree)

@@ -2,8 +2,6 @@
 bit.
 """
 
-from __future__ import annotations
-
 import json
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -50,7 +48,7 @@ from ..materials import (
 from .law_grid import load_grid
 from .law_rows import FIELDS, CoupledRows
 from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
-from .row_layout import COVER_FUNCTIONS, CoverRows, steady_columns, steady_table
+from .row_layout import COVER_FUNCTIONS, STEADY, CoverRows, steady_table
 
 #: attributes of a cover that its file states besides the series; the last one where the other body
 #: is a layer
@@ -114,7 +112,7 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> Data
         return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
     creep = np.moveaxis(law.cover.creep, 0, -1)
     numbers = SimpleNamespace(
-        coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1),
+        coefficients=np.concatenate([law.steady_coefficients[..., STEADY], creep], axis=-1),
         limits=law.cover.limits,
         e0=law.e0,
         alpha=law.alpha,
@@ -246,9 +244,7 @@ def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
     numbers: other variables of the file, of which u, t, edges and mu are read.
     Raises ValueError for shapes that do not go together, KeyError for a variable that is missing.
     """
-    u, t, edges = (
-        lock_array(np.array(numbers[name], dtype=np.float64)) for name in ("u", "t", "edges")
-    )
+    u, t, edges = (lock_array(np.array(numbers[name], dtype=float)) for name in ("u", "t", "edges"))
     if fields.shape != (u.size + 2, t.size, len(FIELDS)) or edges.shape != (u.size + 2, 4):
         raise ValueError(f"its functions have shape {fields.shape[:-1]}")
     return CoupledRows(mu=float(numbers["mu"]), u=u, t=t, edges=edges, fields=fields)
@@ -283,9 +279,7 @@ def _coefficients(content: Content) -> Floats:
     Raises KeyError for a function that is missing, ValueError for functions of different shapes.
     """
     names = KINDS[content.attributes[KIND]].functions
-    return lock_array(
-        np.stack([content.numbers[name] for name in names], axis=-1).astype(np.float64)
-    )
+    return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(float))
 
 
 @contextmanager

@@ -20,8 +20,6 @@ length over that at rest, (1 + 2 h/z)^(-1/2).
 grid: :class:`CoupledRows`, with the vector of splines that kernels read (:mod:`.coupled_splines`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -275,7 +273,7 @@ def series_record(material: Any) -> tuple[Any, Floats]:
         weights=np.empty(0),
         Q=np.ones((1, 1)),
     )
-    return one, np.array(material, dtype=np.float64).reshape(-1)
+    return one, np.array(material, dtype=float).reshape(-1)
 
 
 class ModesValues(NamedTuple):
@@ -376,7 +374,7 @@ class CoupledRows:
         along = self._slopes_along if self.graded else _free_slopes
         fields = self.fields
         if self.graded:
-            fields = np.concatenate([fields, self._friction()[..., np.newaxis]], axis=-1)
+            fields = np.concatenate([fields, self._friction()[..., None]], axis=-1)
         over_t = self._slopes_in_t(fields)
         jets = np.stack([fields, along(x, fields), over_t, along(x, over_t)], axis=-1)
         edges = np.stack([self.edges, along(x, self.edges)], axis=-1)
@@ -419,7 +417,7 @@ class CoupledRows:
 
         It is mu (Q/mu) times the reduced creepage, less the work of shear on the strains.
         """
-        middle, low, high = (edge[:, np.newaxis] for edge in self.edges[:, :3].T)
+        middle, low, high = (edge[:, None] for edge in self.edges[:, :3].T)
         # the creepage at t: from the middle to the onset of its side, by the part w(t) of the way
         creep = middle + np.where(self.t < 0.0, low - middle, high - middle) * grade(self.t)
         # work_half_space and work_cylinder of FIELDS

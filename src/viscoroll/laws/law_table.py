@@ -15,8 +15,6 @@ h/z)^(-1/2), and its shift over half the length epsilon = g/z; eta is z of the s
 quantities are dimensionless; M/V is in units of P T_ref.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from collections.abc import Callable
@@ -150,7 +148,7 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     powers[2:, 0, 0] = T_mean
     functions = _FunctionsOfW(w, powers, by_modes.values)
     x = rows.x.ravel()
-    both = zip(functions.at_speed(x), functions.at_stick_limit(x), strict=True)
+    both = zip(functions.at_speed(x), functions.at_stick_limit(x))
     powers = rows.fit_slopes(*(np.concatenate(parts).reshape(-1, *rows.x.shape) for parts in both))
     powers[[0, 4, 5], 0, 0] = 1.0
     powers[1, 0, :2] = [0.0, math.ldexp(mean, e0)]
@@ -345,11 +343,6 @@ def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
 _lock = threading.Lock()
 
 
-@lru_cache(maxsize=_KEPT_TABLES)
-def _made(material: float | Prony | Bodies) -> LawTable:
-    return make_table(material)
-
-
 def make_table(
     material: float | Prony | Bodies,
     coefficients: Floats | None = None,
@@ -416,6 +409,9 @@ def make_table(
         half_space_weight=weights,
         cover=cover,
     )
+
+
+_made = lru_cache(maxsize=_KEPT_TABLES)(make_table)
 
 
 # --- The law of one relaxation time for all alpha ---
@@ -504,10 +500,12 @@ def law_axis(low: float, high: float) -> LawAxis:
         tables = tables_of_octave(octave)
         # T_mean of one relaxation time is (alpha - 1)/alpha, in units of T_epsilon
         c = np.array([table.T_mean for table in tables])[:, None, None, None]
-        pieces.append(alpha_terms(to_axis(np.array([table.coefficients for table in tables]), c)))
+        columns = to_axis(np.array([table.coefficients for table in tables]), c)
+        # coefficients of T_0 to T_15 in s = 2 log2(alpha/2^n) - 1
+        pieces.append(np.einsum("jk,k...->j...", _nodes()[1], columns))
     rows = tuple(piece.shape[1] for piece in pieces)
     coefficients = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
-    for padded, piece in zip(coefficients, pieces, strict=True):
+    for padded, piece in zip(coefficients, pieces):
         padded[:, : piece.shape[1]] = piece
     # the slowest rate of creep is 1/T_epsilon for every alpha, and so e0 is the same
     return LawAxis(lock_array(coefficients), rows, octaves[0], tables[0].e0)
@@ -522,15 +520,6 @@ def tables_of_octave(octave: int) -> list[LawTable]:
     rows.
     """
     return [make_table(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
-
-
-def alpha_terms(values: Floats) -> Floats:
-    """Return the Chebyshev terms of functions of alpha, by :func:`numpy.einsum`.
-
-    values: values of the functions at the nodes of an octave, (16, ...).
-    Returns the coefficients of T_0 to T_15 in s = 2 log2(alpha/2^n) - 1, in the same shape.
-    """
-    return np.einsum("jk,k...->j...", _nodes()[1], values)
 
 
 @lru_cache(maxsize=1)

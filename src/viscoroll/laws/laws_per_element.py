@@ -7,8 +7,6 @@ reads a part of a row has it made if it is that of another element.  Such a reco
 thread.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from functools import lru_cache
@@ -67,7 +65,7 @@ def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
     """
     from ..kernels.law import alpha_axis
 
-    alpha = np.ascontiguousarray(alpha, dtype=np.float64)
+    alpha = np.ascontiguousarray(alpha, dtype=float)
     # numbers n of all octaves that occur, 2^n <= alpha < 2^(n + 1)
     octaves = np.flatnonzero(np.bincount(_exponents(alpha) - 1))
     with _lock:

@@ -22,8 +22,6 @@ dimensionless: times are divided by T_ref, the unit of time of the material.
 - s: place of alpha in its octave [2^n, 2^(n+1)), s = 2 log2(alpha/2^n) - 1, in [-1, 1].
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
@@ -51,7 +49,7 @@ COVER_FUNCTIONS = (
 #: functions of a cover with limits for u -> infinity: lam and these
 _LIMITED = 1 + len(COVER_FUNCTIONS)
 #: columns of the functions of steady rolling, all but N
-_STEADY = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
+STEADY = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
 #: functions of a table over alpha in their order; m is M/V of both bodies, which are alike
 AXIS_FUNCTIONS = ("lam", "epsilon", "m", "N", "share", "press")
 #: columns of a table that those are taken from
@@ -106,15 +104,8 @@ def steady_table(powers: Any, N: float = math.nan) -> Floats:
     """
     powers = np.stack(powers, axis=-1)
     table = np.full((*powers.shape[:-1], len(FUNCTIONS)), N)
-    table[..., _STEADY] = powers
+    table[..., STEADY] = powers
     return table
-
-
-def steady_columns(table: Floats) -> Floats:
-    """Return the columns of a ``table`` but N as a new array (rows, 24 powers, 6 functions), in its
-    order.
-    """
-    return table[..., _STEADY]
 
 
 def constant_rows(*values: float) -> Floats:
