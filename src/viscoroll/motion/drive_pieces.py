@@ -301,7 +301,7 @@ def fit_callable(
     end: float,
     rtol: float,
     low: float,
-    resolve: float | None = None,
+    resolve: float | None,
 ) -> Piecewise:
     """Fit a callable by piecewise polynomials, so that the integrator never calls it.
 
