@@ -57,8 +57,8 @@ class _ShiftLaw:
     """
 
     def __post_init__(self: Any) -> None:
-        """Check T0, degrees Celsius, and the other fields, which must be > 0; raises ParameterError."""
-        check_fields(self, **dict.fromkeys([name for name in vars(self) if name != "T0"], 0.0))
+        """Check T0, degrees Celsius, and the other fields, which must be > 0."""
+        check_fields(self, SI, **dict.fromkeys([name for name in vars(self) if name != "T0"], 0.0))
         object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self: Any, temperature: float) -> float:
