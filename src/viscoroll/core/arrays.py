@@ -264,7 +264,8 @@ def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     try:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
-        found = ", ".join(f"{name} {np.shape(a)}" for name, a in arrays.items() if np.ndim(a))
+        each = {name: getattr(array, "shape", ()) for name, array in arrays.items()}
+        found = ", ".join(f"{name} {shape}" for name, shape in each.items() if shape)
         allowed = "equal, or broadcast as in numpy"
         raise ParameterError(
             "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"

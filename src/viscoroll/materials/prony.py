@@ -439,7 +439,7 @@ class Prony(OneOrMany):
         array([10.])
         """
         factors = check_array("factor", factor, above=0.0)
-        broadcast_shape(factor=factors, materials=np.empty(self.shape))
+        broadcast_shape(factor=factors, materials=self)
         times = self._times * factors[..., np.newaxis]
         if self.by_creep:
             # with alpha, which 1 - sum J would give with fewer digits
