@@ -253,11 +253,7 @@ def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     arrays: arrays of numpy and numbers by the name that an error states; what has no axes fits
         every shape.
     Returns the shape, a tuple of ints; () if no array has axes, or none is given.
-
-    Raises
-    ------
-    ParameterError
-        If they do not broadcast; the message lists the shapes.
+    Raises ParameterError if they do not broadcast; the message lists the shapes.
     """
     # a set of the different shapes: mostly one, which needs no call of numpy
     shapes = {getattr(array, "shape", ()) for array in arrays.values()} - {()}
