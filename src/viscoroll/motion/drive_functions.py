@@ -460,8 +460,8 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
-    # all functions start at 0, which is kept once
-    starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
+    starts = np.sort(np.concatenate(own, axis=1), axis=1)
+    # of equal starts, as 0 of all functions, the last is kept
     starts = starts[:, (ends_of(starts) > starts + _INSTANT).any(axis=0)]
     kept = max(int((starts < end).any(axis=0).sum()), 1)
     ends = ends_of(starts)[:, :kept]
