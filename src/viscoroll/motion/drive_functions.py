@@ -522,8 +522,6 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
     Returns indices in 0 ... k - 1, int, in the shape of ``times``.  Takes memory in proportion to
     its input, and n log k steps for each row.
     """
-    if len(begins) == 1:
-        return np.searchsorted(begins[0], times, side="right") - 1
     # Complex numbers are sorted by their real parts first: one search through the pieces of all
     # motions in a row.
     row = np.arange(len(begins))[:, None]
