@@ -213,8 +213,7 @@ class Bodies(OneOrMany):
             return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
         # the series leaves out the last modes, which have no strength
         own = self._creep[2][..., : J.shape[-1]]
-        weights = np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
-        return weights
+        return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
         """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations
