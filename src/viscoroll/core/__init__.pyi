@@ -23,7 +23,6 @@ from .arrays import extent as extent
 from .arrays import read_only as read_only
 from .arrays import run_blocks as run_blocks
 from .arrays import thread_count as thread_count
-from .drives_and_labels import UNLABELLED_TYPES as UNLABELLED_TYPES
 from .drives_and_labels import Feedback as Feedback
 from .drives_and_labels import Labels as Labels
 from .drives_and_labels import Schedule as Schedule
@@ -76,6 +75,7 @@ from .files import section_error as section_error
 from .files import write_bytes as write_bytes
 from .files import write_dataset as write_dataset
 from .files import write_text as write_text
+from .quantities import UNITLESS_TYPES as UNITLESS_TYPES
 from .quantities import conversion_factor as conversion_factor
 from .quantities import is_real as is_real
 from .quantities import is_unit as is_unit

@@ -253,18 +253,15 @@ def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     arrays: arrays of numpy and numbers by the name that an error states; what has no axes fits
         every shape.
     Returns the shape, a tuple of ints; () if no array has axes, or none is given.
-
-    Raises
-    ------
-    ParameterError
-        If they do not broadcast; the message lists the shapes.
+    Raises ParameterError if they do not broadcast; the message lists the shapes.
     """
     # a set of the different shapes: mostly one, which needs no call of numpy
     shapes = {getattr(array, "shape", ()) for array in arrays.values()} - {()}
     try:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
-        found = ", ".join(f"{name} {np.shape(a)}" for name, a in arrays.items() if np.ndim(a))
+        each = {name: getattr(array, "shape", ()) for name, array in arrays.items()}
+        found = ", ".join(f"{name} {shape}" for name, shape in each.items() if shape)
         allowed = "equal, or broadcast as in numpy"
         raise ParameterError(
             "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"

@@ -16,7 +16,7 @@ import numpy as np
 
 from .arrays import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
 from .errors import ParameterError, described_error, shape_error
-from .quantities import convert, has_no_unit, split_unit, to_unit
+from .quantities import UNITLESS_TYPES, convert, has_no_unit, split_unit, to_unit
 from .scale import HasUnits, Scale
 
 # --- Functions of time that act on motions ---
@@ -460,10 +460,6 @@ def dataset_axes(
     return axes[:front] + dims, coords
 
 
-#: Types that have neither labels nor units.
-UNLABELLED_TYPES = frozenset((float, int, np.float64, type(None)))
-
-
 def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
     """Return the arguments of a call as plain numbers in their units, and their labels.
 
@@ -491,7 +487,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
         may stand beside them), arrays of xarray whose common axes have different coordinates,
         series of pandas with different indices, or both kinds together.
     """
-    if UNLABELLED_TYPES.issuperset(map(type, given.values())) or all(
+    if UNITLESS_TYPES.issuperset(map(type, given.values())) or all(
         map(has_no_unit, given.values())
     ):
         return given, None

@@ -100,8 +100,8 @@ def pint_spelling(unit: str) -> str:
 
 # --- Inputs with units ---
 
-#: Types without a unit.
-_UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
+#: Types without a unit and without labels.
+UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
 #: Kinds of arrays without a unit, as numpy names them: truth values, integers, floats, complex,
 #: texts, dates.
 _UNITLESS_KINDS = frozenset("biufcUSM")
@@ -135,7 +135,7 @@ def has_no_unit(value: Any) -> bool:
     kind = type(value)
     if kind is np.ndarray:
         return value.dtype.kind in _UNITLESS_KINDS
-    return kind in _UNITLESS_TYPES or (
+    return kind in UNITLESS_TYPES or (
         kind in (list, tuple) and _NUMBER_TYPES.issuperset(map(type, value))
     )
 

@@ -105,9 +105,7 @@ class Bodies(OneOrMany):
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
             raise shape_error("share", share.shape, "a number, or one for each pair, (n,)")
-        # arrays for their shapes alone
-        many = {name: np.empty(body.shape) for name, body in bodies.items()}
-        object.__setattr__(self, "shape", broadcast_shape(**many, share=share))
+        object.__setattr__(self, "shape", broadcast_shape(**bodies, share=share))
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
         if modes > MOST_MODES:
             raise described_error(
@@ -215,8 +213,7 @@ class Bodies(OneOrMany):
             return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
         # the series leaves out the last modes, which have no strength
         own = self._creep[2][..., : J.shape[-1]]
-        weights = np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
-        return weights
+        return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
         """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations

@@ -50,8 +50,43 @@ _FAR_OFF = 0.1
 _GAP = 1.0, 1e4
 
 
+class _ShiftLaw:
+    """A time-temperature shift with a pole: ln a_T = slope (1/(T - pole) - 1/(T0 - pole)).
+
+    The law of Arrhenius is that of Williams, Landel and Ferry with its pole at absolute zero.
+    """
+
+    def __post_init__(self: Any) -> None:
+        """Check T0, degrees Celsius, and the other fields, which must be > 0."""
+        check_fields(self, SI, **dict.fromkeys([name for name in vars(self) if name != "T0"], 0.0))
+        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
+
+    def __call__(self: Any, temperature: float) -> float:
+        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
+
+        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is
+        converted.
+        Raises ParameterError and warns as the class states.
+        """
+        found = check_celsius("temperature", temperature)
+        above = found - self.pole
+        if above <= 0.0:
+            allowed = (
+                f"> T0 - C2 = {self.pole}, where the WLF shift is infinite, in degrees Celsius"
+            )
+            raise ParameterError("temperature", temperature, allowed)
+        # the difference of the reciprocals, without cancellation near T0
+        exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
+        if not abs(exponent) < 700.0:
+            allowed = (
+                f"nearer to T0: a_T = exp({exponent:.3g}) cannot be represented in double precision"
+            )
+            raise ParameterError("temperature", temperature, allowed)
+        return math.exp(exponent)
+
+
 @dataclass(frozen=True, kw_only=True)
-class WLF:
+class WLF(_ShiftLaw):
     """log10 a_T = -C1 (T - T0)/(C2 + T - T0), of M. Williams, R. Landel and J. Ferry (1955).
 
     Parameters
@@ -83,26 +118,6 @@ class WLF:
     C1: float = 17.44
     C2: float = 51.6
 
-    def __post_init__(self) -> None:
-        check_fields(self, C1=0.0, C2=0.0)
-        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
-
-    def __call__(self, temperature: float) -> float:
-        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
-
-        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is
-        converted.
-        Raises ParameterError and warns as the class states.
-        """
-        above = check_celsius("temperature", temperature) - self.T0
-        if self.C2 + above <= 0.0:
-            allowed = (
-                f"> T0 - C2 = {self.T0 - self.C2}, where the WLF shift is infinite, in "
-                "degrees Celsius"
-            )
-            raise ParameterError("temperature", temperature, allowed)
-        return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
-
     @property
     def pole(self) -> float:
         """Temperature T0 - C2 at which a_T is infinite, degrees Celsius."""
@@ -115,7 +130,7 @@ class WLF:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Arrhenius:
+class Arrhenius(_ShiftLaw):
     """ln a_T = (energy/R_gas) (1/T - 1/T0), with both temperatures in kelvin.
 
     Parameters
@@ -144,23 +159,6 @@ class Arrhenius:
 
     energy: float
     T0: float
-
-    def __post_init__(self) -> None:
-        check_fields(self, energy=0.0)
-        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
-
-    def __call__(self, temperature: float) -> float:
-        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
-
-        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is
-        converted.
-        Raises ParameterError and warns as the class states.
-        """
-        kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
-        return _shift(
-            temperature,
-            self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)),
-        )
 
     @property
     def pole(self) -> float:
@@ -512,23 +510,6 @@ def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
         object.__setattr__(
             instance, name, check_number(name, getattr(instance, name), unit=unit, above=low)
         )
-
-
-def _shift(temperature: float, exponent: float) -> float:
-    """Return a_T = exp(exponent), dimensionless, > 0.
-
-    temperature: degrees Celsius, as the caller gave it, for the error.
-    exponent: ln a_T, dimensionless; NaN is refused too.
-    Raises ParameterError for an exponent of 700 or more in size, near which a_T leaves the range of
-    doubles.
-    """
-    if not abs(exponent) < 700.0:
-        raise ParameterError(
-            "temperature",
-            temperature,
-            f"nearer to T0: a_T = exp({exponent:.3g}) cannot be represented in double precision",
-        )
-    return math.exp(exponent)
 
 
 # --- The data that a material was fitted to ---

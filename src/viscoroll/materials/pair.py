@@ -8,7 +8,6 @@ beta_D is 0 at all times.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
@@ -252,41 +251,29 @@ class Pair:
         return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
     @cached_property
-    def dundurs(self) -> tuple[float, float]:
+    def dundurs(self) -> tuple[Any, Any]:
         """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous
-        moduli), floats, dimensionless, any sign.
+        moduli), dimensionless, any sign: floats, of many pairs lists.
 
         The moduli relax from one end to the other; the two numbers serve the check that shear and
         pressure do not couple.  Body 1 of the formula of :func:`dundurs` is the cylinder; one body
-        may be rigid.  It is exactly (0.0, 0.0) for like bodies.  Both must be a :class:`Material`;
-        of many bodies :attr:`most_coupled` is the largest.
-        """
-        return self._at_both_ends(dundurs)
-
-    @property
-    def most_coupled(self) -> float:
-        """The largest Dundurs' constant in size, of long times or at once, of any of many pairs.
-
-        A float >= 0, dimensionless.  Bodies may be of either class; a :class:`Solid` may have
-        arrays of E and nu, and many series.
-        """
-        of_pairs = np.vectorize(dundurs, otypes=[float])
-        return max(float(np.abs(each).max()) for each in self._at_both_ends(of_pairs))
-
-    def _at_both_ends(self, function: Callable[..., Any]) -> tuple[Any, Any]:
-        """Return (value of a function by the moduli of long times, value by the instantaneous
-        ones).
-
-        function: one with the arguments of :func:`dundurs`: shear moduli and Poisson's ratios of
-            both bodies, and the plane.
+        may be rigid.  It is exactly (0.0, 0.0) for like bodies.
         """
         one = self.cylinder
         other = self.half_space
+        of_pairs = np.vectorize(dundurs, otypes=[float])
         long, instant = (
-            function(one.G * part, one.nu, other.G * other_part, other.nu, self.plane)
+            of_pairs(one.G * part, one.nu, other.G * other_part, other.nu, self.plane).tolist()
             for part, other_part in ((1.0, 1.0), (one.prony.alpha, other.prony.alpha))
         )
         return long, instant
+
+    @property
+    def most_coupled(self) -> float:
+        """The largest Dundurs' constant in size, of long times or at once, of any of many pairs, a
+        float >= 0, dimensionless.
+        """
+        return max(float(np.abs(each).max()) for each in self.dundurs)
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:

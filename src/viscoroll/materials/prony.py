@@ -439,7 +439,7 @@ class Prony(OneOrMany):
         array([10.])
         """
         factors = check_array("factor", factor, above=0.0)
-        broadcast_shape(factor=factors, materials=np.empty(self.shape))
+        broadcast_shape(factor=factors, materials=self)
         times = self._times * factors[..., np.newaxis]
         if self.by_creep:
             # with alpha, which 1 - sum J would give with fewer digits
@@ -529,7 +529,7 @@ def _check_modes(
     shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
     if len(shape) not in (1, 2):
         raise shape_error(", ".join(names), shape, "(modes,) or (materials, modes)")
-    values, each = sort_modes(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
+    values, each = sort_modes(*np.broadcast_arrays(values, each))
     present = values > 0.0
     most = int(present.sum(axis=-1).max(initial=0))
     if most > MOST_MODES:

@@ -460,8 +460,8 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
-    # all functions start at 0, which is kept once
-    starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
+    starts = np.sort(np.concatenate(own, axis=1), axis=1)
+    # of equal starts, as 0 of all functions, the last is kept
     starts = starts[:, (ends_of(starts) > starts + _INSTANT).any(axis=0)]
     kept = max(int((starts < end).any(axis=0).sum()), 1)
     ends = ends_of(starts)[:, :kept]
@@ -471,39 +471,31 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     packed = np.zeros((count, kept, COL_COEFFICIENTS + len(functions) * terms))
     packed[..., COL_START] = starts
     packed[..., COL_SCALE] = _dx_dt(ends - starts)
+    coefficients = packed[..., COL_COEFFICIENTS:]
     for n, function in enumerate(functions):
-        part = _restrict(function, rows, starts, ends)
-        packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part
+        part = _restrict(function, starts, ends)
+        coefficients[..., n * terms :][..., : part.shape[-1]] = part
     # index of the last piece of each motion that starts before the end
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
     if late.any():  # the last piece before the end acts after it too
-        acting = packed[np.arange(count), np.broadcast_to(at_end, count), COL_COEFFICIENTS:]
-        packed[..., COL_COEFFICIENTS:] = np.where(
-            late[..., None], acting[:, None], packed[..., COL_COEFFICIENTS:]
-        )
+        acting = np.take_along_axis(coefficients, at_end[:, None, None], axis=1)
+        coefficients[:] = np.where(late[..., None], acting, coefficients)
     return packed
 
 
-def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> Floats:
+def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
     """Return the coefficients of a function over finer pieces.
 
     function: :class:`Piecewise` of one motion or of m motions.
-    rows: number of motions with times of their own, or 1.
-    starts, ends: when the finer pieces start and end, (rows, k), in T_ref; none extends over a
+    starts, ends: when the finer pieces start and end, (1 or m, k), in T_ref; none extends over a
     start of the function's own.  The last may end at infinity.
     Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms); their
     value at the left end of a piece is shifted to 0 where it is rounding.
     """
     piece = _piece_at(function.starts, starts)
-    shape = rows, function.starts.shape[1]
-    first, last = (
-        np.take_along_axis(np.broadcast_to(t, shape), piece, 1)
-        for t in (function.starts, function.ends)
-    )
-    piece = np.broadcast_to(piece, (max(rows, len(function.terms)), piece.shape[1]))
-    terms = np.broadcast_to(function.terms, (len(piece), *function.terms.shape[1:]))
-    terms = np.take_along_axis(terms, piece[..., None], 1)
+    first, last = (np.take_along_axis(t, piece, 1) for t in (function.starts, function.ends))
+    terms = np.take_along_axis(function.terms, piece[..., None], 1)
     # a piece that is not cut keeps its terms to the bit
     same = (first == starts) & (last == ends)
     return _start_at_zero(
@@ -522,8 +514,6 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
     Returns indices in 0 ... k - 1, int, in the shape of ``times``.  Takes memory in proportion to
     its input, and n log k steps for each row.
     """
-    if len(begins) == 1:
-        return np.searchsorted(begins[0], times, side="right") - 1
     # Complex numbers are sorted by their real parts first: one search through the pieces of all
     # motions in a row.
     row = np.arange(len(begins))[:, None]

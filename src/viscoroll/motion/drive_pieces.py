@@ -301,7 +301,7 @@ def fit_callable(
     end: float,
     rtol: float,
     low: float,
-    resolve: float | None = None,
+    resolve: float | None,
 ) -> Piecewise:
     """Fit a callable by piecewise polynomials, so that the integrator never calls it.
 
@@ -541,9 +541,7 @@ def _follow_corners(times: Floats, values: Floats) -> Piecewise:
     # constant before the first corner and after the last; in a piece the mean of both ends, and x
     # times half of their difference
     values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
-    terms = np.empty((len(values), times.shape[1] + 1, 2))
-    np.add(values[:, 1:], values[:, :-1], out=terms[..., 0])
-    np.subtract(values[:, 1:], values[:, :-1], out=terms[..., 1])
+    terms = np.stack([values[:, 1:] + values[:, :-1], np.diff(values)], axis=-1)
     terms *= 0.5
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])

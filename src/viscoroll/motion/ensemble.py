@@ -246,9 +246,7 @@ class Ensemble(RollResult):
         speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, start in speeds.items():
             if (values := getattr(self, name)) is not None:
-                speeds[name] = np.fmax(
-                    start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values))
-                )
+                speeds[name] = np.fmax(start, np.fmax.reduce(np.abs(values), axis=1))
         index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
         # +0 from rest: friction moves the axis in the sense of the rotation
         sense = self.V0 * self.omega0 + 0.0

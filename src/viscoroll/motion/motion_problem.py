@@ -88,9 +88,9 @@ class SolverOptions(NamedTuple):
     rtol: float
     rest: float | None
     max_steps: int
-    resolve: float | None = None
-    unsteady: bool = False
-    rested: bool | float = False
+    resolve: float | None
+    unsteady: bool
+    rested: bool | float
 
 
 class MotionProblem(NamedTuple):

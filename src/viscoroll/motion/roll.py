@@ -21,7 +21,7 @@ from ..contact_mechanics import (
 from ..contact_mechanics.contact import contact
 from ..contact_mechanics.validity import validity
 from ..core import (
-    UNLABELLED_TYPES,
+    UNITLESS_TYPES,
     ArrayLike,
     Dataset,
     Feedback,
@@ -586,7 +586,7 @@ def roll(
     times = output_times(t, units)
     drive = Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V)
     # plain floats, the common case, need no search for units
-    if not UNLABELLED_TYPES.issuperset(map(type, (V0, omega0, *drive))):
+    if not UNITLESS_TYPES.issuperset(map(type, (V0, omega0, *drive))):
         (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
     options = SolverOptions(
         rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested

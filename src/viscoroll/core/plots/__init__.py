@@ -388,18 +388,13 @@ def equilibria(data: Dataset) -> Figure:
     x, V, stable = (
         data[name].broadcast_like(data["V"]).values.ravel() for name in (load, "V", "stable")
     )
-    style = {
-        "color": LINES[1]["color"],
-        "marker": "o",
-        "linestyle": "",
-        "markersize": 4,
-    }
+    style = {"color": LINES[1]["color"], "markersize": 4}
     for chosen, face, text in (
         (stable != 0, style["color"], "stable"),
         (stable == 0, "white", "unstable"),
     ):
         drawn = chosen & np.isfinite(V)
-        axes.plot(x[drawn], V[drawn], markerfacecolor=face, label=text, **style)
+        axes.plot(x[drawn], V[drawn], "o", markerfacecolor=face, label=text, **style)
     axes.set(xlabel=variable_label(data[load]), ylabel=variable_label(data["V"]))
     speeds = np.abs(_finite(data["V"]))
     speeds = speeds[speeds > 0.0]
