@@ -82,9 +82,7 @@ def test_a_material_each_is_that_material_alone(name):
     )
     scene = vr.Scene(material=many, kappa=KAPPA, mu=MU)
     delta = s * delta_star(scene, V)
-    two = isinstance(many, vr.Bodies)
-    moments = ("dM_dV", *SLOPES_OF_BODIES) if two else ("dM_dV",)
-    fields = (*FIELDS, *SLOPES, *(PARTS + SLOPES_OF_BODIES if two else ()))
+    fields = FIELDS + SLOPES + (PARTS + SLOPES_OF_BODIES) * isinstance(many, vr.Bodies)
     found = vr.contact(scene, V, delta=delta, fields=fields)
     for n, one in enumerate(many):
         own = scene.replace(material=one)
@@ -93,7 +91,9 @@ def test_a_material_each_is_that_material_alone(name):
         near = np.maximum(
             1.0 - s[:, n], tol.EACH_MATERIAL
         )  # delta_star has the condition of beta and of slopes of Q
-        scales = dict.fromkeys(PARTS, abs(alone.M)) | dict.fromkeys(moments, slope)
+        scales = dict.fromkeys(PARTS, abs(alone.M)) | dict.fromkeys(
+            ("dM_dV", *SLOPES_OF_BODIES), slope
+        )
         scales["dQ_dV"] = MU / np.maximum(V[:, n], 1e-9 / KAPPA)
         for field in fields:
             rel = tol.EACH_SLOPE if field in SLOPES + SLOPES_OF_BODIES else tol.EACH_MATERIAL

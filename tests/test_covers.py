@@ -175,8 +175,6 @@ def test_any_cover(nu, thickness, strength, time, part, on):
     assert np.all((state.lam > 0.0) & (state.lam < 1.0) & (state.M > 0.0) & (state.epsilon > 0.0))
     delta = state.delta_0 + state.delta_star * np.linspace(-1.25, 1.25, 25)
     c, back = (vr.contact(scene, each[:, None], delta=delta) for each in (V, -V))
-    lost = V[:, None] * (c.M_half_space + (1.0 + delta) * c.M_cylinder + delta * c.Q)
-    assert np.all(lost > 0.0)
     assert np.all((np.abs(c.Q) <= MU) & (c.beta >= 0.0) & (c.beta <= 1.0))
     assert np.all(np.diff(c.Q, axis=1) >= 0.0)
     assert np.array_equal(c.full_slip, np.abs(c.Q) == MU)
