@@ -39,11 +39,7 @@ def states_of_alphas():
     alpha, kappa, mu, V, s = of_all_alphas(300, 5)
     V[::2] = -V[::2]
     V[7] = 0.0
-    delta = (
-        1.2
-        * s
-        * vr.contact(vr.Scene(alpha, kappa, mu), V, delta=0.0, fields="delta_star").delta_star
-    )
+    delta = 1.2 * s * vr.Scene(alpha, kappa, mu).contact(V, delta=0.0).delta_star
     return {"alpha": alpha, "kappa": kappa, "mu": mu, "V": V, "delta": delta}
 
 
