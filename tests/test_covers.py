@@ -4,7 +4,6 @@ elements: make prove.
 
 import ctypes
 import dataclasses
-import json
 from functools import partial
 
 import c_code
@@ -278,19 +277,12 @@ def test_a_load_each():
 
 
 def test_a_law_of_a_roller_on_disk(tmp_path):
-    """It keeps its bodies, has the same numbers in JSON, and is refused where the load makes
-    another thickness/l0.
-    """
+    """It keeps its bodies, and is refused where the load makes another thickness/l0."""
     roller = roller_of(THIN, vr.Material.elastic(3e9, 0.3))
     dataset = vr.tables.law(roller)
-    for save, name in ((vr.tables.save, "law.nc"), (vr.tables.export, "law.json")):
-        save(dataset, tmp_path / name)
+    vr.tables.save(dataset, tmp_path / "law.nc")
     assert all("speeds, against solves" in check.meaning for check in check_table(dataset, 3, 0))
-    content = json.loads((tmp_path / "law.json").read_text())
     law = vr.load_law(tmp_path / "law.nc")
-    assert all(
-        np.array_equal(content[name], dataset[name].values) for name in ("lam", "limit", "lam_Q")
-    )
     assert law.pair == roller.pair
     # delta_0 does not vary with mu: no grid holds every kappa and mu
     grid = partial(vr.tables.build, law, [0.1], delta=[0.0])
