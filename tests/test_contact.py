@@ -82,9 +82,7 @@ def test_a_material_each_is_that_material_alone(name):
     )
     scene = vr.Scene(material=many, kappa=KAPPA, mu=MU)
     delta = s * delta_star(scene, V)
-    two = isinstance(many, vr.Bodies)
-    moments = ("dM_dV", *SLOPES_OF_BODIES) if two else ("dM_dV",)
-    fields = (*FIELDS, *SLOPES, *(PARTS + SLOPES_OF_BODIES if two else ()))
+    fields = FIELDS + SLOPES + (PARTS + SLOPES_OF_BODIES) * isinstance(many, vr.Bodies)
     found = vr.contact(scene, V, delta=delta, fields=fields)
     for n, one in enumerate(many):
         own = scene.replace(material=one)
@@ -93,12 +91,14 @@ def test_a_material_each_is_that_material_alone(name):
         near = np.maximum(
             1.0 - s[:, n], tol.EACH_MATERIAL
         )  # delta_star has the condition of beta and of slopes of Q
-        scales = dict.fromkeys(PARTS, abs(alone.M)) | dict.fromkeys(moments, slope)
+        scales = dict.fromkeys(PARTS, abs(alone.M)) | dict.fromkeys(
+            ("dM_dV", *SLOPES_OF_BODIES), slope
+        )
         scales["dQ_dV"] = MU / np.maximum(V[:, n], 1e-9 / KAPPA)
         for field in fields:
             rel = tol.EACH_SLOPE if field in SLOPES + SLOPES_OF_BODIES else tol.EACH_MATERIAL
             rel = rel / near if field == "beta" or field.startswith("dQ") else rel
-            pair = getattr(found, field)[:, n], getattr(alone, field)
+            pair = found[field][:, n], alone[field]
             assert close(*pair, rel, scale=scales.get(field, 0.0), what=(field, n))
 
 
@@ -125,15 +125,13 @@ def test_carter():
     V_twice = np.tile(V, 2)
     state = vr.contact(scene, V_twice, delta=delta, slopes=True)
     for name, exact in (("lam", 1.0), ("epsilon", 0.0), ("M", 0.0), ("delta_star", star)):
-        assert (getattr(state, name) == exact).all(), name
+        assert (state[name] == exact).all(), name
     assert close(state.beta, 1.0 - abs(delta) / star, tol.CARTER, scale=1.0)
     assert close(state.Q, 4 * KAPPA * delta * (1 - abs(delta) * KAPPA / MU), tol.CARTER)
     grip = vr.contact(scene, V_twice, delta=delta, fields="grip").grip
     assert close(grip, (1.0 - abs(delta) / star) ** 2, tol.CARTER, scale=1.0)
     among = vr.contact(scene.replace(alpha=np.ones(120)), V_twice, delta=delta, slopes=True)
-    assert all(
-        np.array_equal(value, getattr(state, name)) for name, value in among.as_dict().items()
-    )
+    assert all(np.array_equal(value, state[name]) for name, value in among.as_dict().items())
 
 
 def test_a_stick_zone_that_rounds_to_nothing():
@@ -171,7 +169,7 @@ def test_all_four_signs_of_V_and_delta(scene):
                 "dQ_dV": sign_delta,
                 "dQ_ddelta": sign_V,
             }
-            for name in (
+            even = [
                 "lam",
                 "zeta",
                 "epsilon",
@@ -180,11 +178,9 @@ def test_all_four_signs_of_V_and_delta(scene):
                 "full_slip",
                 "dM_dV",
                 "dQ_domega",
-                *signs,
-            ):
-                assert np.array_equal(
-                    getattr(state, name), signs.get(name, 1.0) * getattr(base, name)
-                ), name
+            ]
+            for name in (*even, *signs):
+                assert np.array_equal(state[name], signs.get(name, 1.0) * base[name]), name
 
 
 @pytest.mark.parametrize("scene", [SCENE, EACH], ids=["one", "each"])
@@ -197,7 +193,7 @@ def test_delta_and_omega_are_the_same_question(scene):
         vr.contact(scene, V, **given, slopes=True) for given in ({"delta": delta}, {"omega": omega})
     )
     for name in ("delta", "Q", "M", "beta", "dQ_domega"):
-        assert close(getattr(by_omega, name), getattr(by_delta, name), 1e-12, what=name)
+        assert close(by_omega[name], by_delta[name], 1e-12, what=name)
     whole = by_delta.dQ_dV - (1.0 + delta) / V * by_delta.dQ_ddelta
     assert close(by_omega.dQ_dV, whole, 1e-12, scale=scene.mu / V)
 

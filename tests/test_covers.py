@@ -4,7 +4,6 @@ elements: make prove.
 
 import ctypes
 import dataclasses
-import json
 from functools import partial
 
 import c_code
@@ -175,8 +174,6 @@ def test_any_cover(nu, thickness, strength, time, part, on):
     assert np.all((state.lam > 0.0) & (state.lam < 1.0) & (state.M > 0.0) & (state.epsilon > 0.0))
     delta = state.delta_0 + state.delta_star * np.linspace(-1.25, 1.25, 25)
     c, back = (vr.contact(scene, each[:, None], delta=delta) for each in (V, -V))
-    lost = V[:, None] * (c.M_half_space + (1.0 + delta) * c.M_cylinder + delta * c.Q)
-    assert np.all(lost > 0.0)
     assert np.all((np.abs(c.Q) <= MU) & (c.beta >= 0.0) & (c.beta <= 1.0))
     assert np.all(np.diff(c.Q, axis=1) >= 0.0)
     assert np.array_equal(c.full_slip, np.abs(c.Q) == MU)
@@ -280,19 +277,12 @@ def test_a_load_each():
 
 
 def test_a_law_of_a_roller_on_disk(tmp_path):
-    """It keeps its bodies, has the same numbers in JSON, and is refused where the load makes
-    another thickness/l0.
-    """
+    """It keeps its bodies, and is refused where the load makes another thickness/l0."""
     roller = roller_of(THIN, vr.Material.elastic(3e9, 0.3))
     dataset = vr.tables.law(roller)
-    for save, name in ((vr.tables.save, "law.nc"), (vr.tables.export, "law.json")):
-        save(dataset, tmp_path / name)
+    vr.tables.save(dataset, tmp_path / "law.nc")
     assert all("speeds, against solves" in check.meaning for check in check_table(dataset, 3, 0))
-    content = json.loads((tmp_path / "law.json").read_text())
     law = vr.load_law(tmp_path / "law.nc")
-    assert all(
-        np.array_equal(content[name], dataset[name].values) for name in ("lam", "limit", "lam_Q")
-    )
     assert law.pair == roller.pair
     # delta_0 does not vary with mu: no grid holds every kappa and mu
     grid = partial(vr.tables.build, law, [0.1], delta=[0.0])
@@ -306,40 +296,17 @@ def test_a_law_of_a_roller_on_disk(tmp_path):
 @pytest.mark.parametrize(
     ("scene", "V"), [(ALL[1], 0.0), (ALL[3], 2e-3), *((scene, 0.2) for scene in ALL[2:])]
 )
-def test_pressure_of_a_cover_makes_the_parabola(scene, V):
-    """Its integral is the load, its moment M, and the slope that both bodies take on, by Fourier's
-    transform with the kernel of the layer, is x/R in the contact.
-
-    Much faster the memory would reach round the period of the transform."""
-    cover = scene.material
+def test_pressure_of_a_cover_has_the_load_and_its_moment(scene, V):
+    """By Chebyshev's points; the solution itself against boundary elements: test_claims.py."""
     c = free(scene, V)
-    count = 1 << 17
-    cells = 256
     nodes = np.pi * np.arange(1, 400) / 400.0
-    grid = (np.arange(count) - count // 2 + 0.5) / cells
     y = np.cos(nodes)
-    weights = np.sin(nodes) * np.pi / 400.0
+    weights = 0.5 * c.lam * np.sin(nodes) * np.pi / 400.0
     load = 1.0 / (32.0 * KAPPA)
-    p, on_grid = (
-        vr.stress(scene, 0.5 * c.lam * (c.epsilon + each), V, delta=c.delta).p for each in (y, grid)
-    )
-    assert close(0.5 * c.lam * weights @ p, load, tol.COVER_PRESSURE)
-    moment = 0.25 * c.lam**2 * weights @ (p * (y + c.epsilon)) / (load * KAPPA)
+    p = vr.stress(scene, 0.5 * c.lam * (c.epsilon + y), V, delta=c.delta).p
+    assert close(weights @ p, load, tol.COVER_PRESSURE)
+    moment = 0.5 * c.lam * weights @ (p * (y + c.epsilon)) / (load * KAPPA)
     assert close(moment, c.M, tol.COVER_MOMENT, scale=max(abs(c.M), c.lam))
-    v = 2.0 * np.pi * np.fft.rfftfreq(count, 1.0 / cells)
-    kernel = 0.0
-    for share, name in ((cover.share, "cylinder"), (1.0 - cover.share, "base")):
-        series, nu, thickness = cover.body(name)
-        part = share * (1.0 if thickness is None else layer.kernel(2.0 * v * thickness / c.lam, nu))
-        b = 1.0 / series.T
-        creep = (series.J * b / (b - 1j * (v / c.zeta)[:, None])).sum(axis=1)
-        kernel = kernel + part * (1.0 / series.alpha + creep)
-    hertz = np.sqrt(np.maximum(1.0 - grid**2, 0.0)) / (8.0 * np.pi * KAPPA)
-    near = np.abs(grid) < 0.8
-    slopes = (-1j * factor * np.fft.rfft(p) for factor, p in ((1.0, hertz), (kernel, on_grid)))
-    of_hertz, found = (np.fft.irfft(slope, count)[near] for slope in slopes)
-    unit = np.mean(of_hertz / grid[near]) * c.lam
-    assert close(found, unit * (grid[near] + c.epsilon), tol.COVER_SLOPE, scale=abs(unit))
 
 
 #: evaluates the header for arrays of states, as the fields and slopes below
@@ -355,7 +322,7 @@ void states(int n, double kappa, double mu, const double *V, const double *slip,
   }
 }
 """  # noqa: E501
-C_FIELDS = (
+C_FIELDS = [
     "lam",
     "epsilon",
     "delta_star",
@@ -365,8 +332,10 @@ C_FIELDS = (
     "M",
     "M_half_space",
     "M_cylinder",
-)
-C_FIELDS += ("dQ_dV", "dQ_domega", "dM_dV")
+    "dQ_dV",
+    "dQ_domega",
+    "dM_dV",
+]
 
 
 @c_code.needs_cc
@@ -385,7 +354,7 @@ def test_the_header_of_C_is_the_contact(tmp_path):
     limit = vr.contact(scene, V, delta=0.0)
     omega = V * (1.0 + limit.delta_0 + part * limit.delta_star)
     slip = omega - V
-    out = np.empty((V.size, len(C_FIELDS)))
+    out = np.empty((V.size, 12))
     pointers = (ctypes.c_void_p(array.ctypes.data) for array in (V, slip, out))
     states(V.size, ctypes.c_double(KAPPA), ctypes.c_double(MU), *pointers)
     known = vr.contact(scene, V, omega=omega, slopes=True, fields=C_FIELDS)

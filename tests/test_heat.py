@@ -198,15 +198,10 @@ def test_limits_are_those_of_the_equilibria():
     for speed, load in zip(V, found.load, strict=True):
         at = ROLLER.replace(load=load).temperature(speed, **WARM).temperature
         assert close(at[0], 70.0, tol.HEAT_BALANCE)
-    assert close(
-        ROLLER.heat_limit(70.0, load=found.load, **WARM).V,
-        V,
-        tol.HEAT_BALANCE,
-    )
+    assert close(ROLLER.heat_limit(70.0, load=found.load, **WARM).V, V, tol.HEAT_BALANCE)
     cold = ROLLER.heat_limit(50.0, V=1.0, **COLD)
-    less, more = (
-        ROLLER.replace(load=cold.load * (1.0 + e)).temperature(1.0, **COLD) for e in (-1e-8, 1e-8)
-    )
+    loads = cold.load * np.array([1.0 - 1e-8, 1.0 + 1e-8])
+    less, more = (ROLLER.replace(load=load).temperature(1.0, **COLD) for load in loads)
     assert cold.runaway
     assert (less.count, more.count) == (3, 1)
     # the lower two lie between nodes of the curve
@@ -257,10 +252,7 @@ def test_conductance_of_film_and_cover():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (
-            lambda: vr.presets.RUBBER_CYLINDER.temperature(1.0, **WARM),
-            "a WLF, an Arrhenius",
-        ),
+        (lambda: vr.presets.RUBBER_CYLINDER.temperature(1.0, **WARM), "a WLF, an Arrhenius"),
         (lambda: with_shift(lambda T: T + 300.0).temperature(1.0, **COLD), "rises at"),
         (lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD), "above ambient"),
         (lambda: vr.conductance(0.1, thickness=0.2), "below R"),

@@ -1,6 +1,6 @@
 """Pictures: whole or not at all, of runs without values too, and loaded when drawn."""
 
-import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,13 +19,12 @@ def test_a_run_without_values(tmp_path):
     """A panel without values says so; all values at one point are one bar."""
     for n, (start, wanted, empty) in enumerate(
         (
-            (
-                "V0 = 2.0\nomega0 = 0.0",
-                '["V", "onset_time", "rest_time"]',
-                {"onset_time", "rest_time"},
-            ),  # none stuck
-            ("V0 = 0.0\nomega0 = 0.0", '["V", "x"]', set()),  # all at rest
-            ("V0 = 0.0\nomega0 = 1.0", '["V", "delta"]', {"delta"}),  # infinite
+            # none stuck
+            ("V0 = 2.0\nomega0 = 0.0", '["V", "onset_time", "rest_time"]', 2),
+            # all at rest
+            ("V0 = 0.0\nomega0 = 0.0", '["V", "x"]', 0),
+            # infinite
+            ("V0 = 0.0\nomega0 = 1.0", '["V", "delta"]', 1),
         )
     ):
         text = (
@@ -34,20 +33,13 @@ def test_a_run_without_values(tmp_path):
         )
         run_ensemble(run_of(text, tmp_path), tmp_path / f"{n}.zarr", threads=1)
         figure = draw(open_run(tmp_path / f"{n}.zarr").summaries)
-        titles = dict(
-            zip(
-                sorted(json.loads(wanted)),
-                [axes.get_title() for axes in figure.axes[1::2]],
-                strict=True,
-            )
-        )
-        assert {name for name, title in titles.items() if title == "no values"} == empty
+        assert [axes.get_title() for axes in figure.axes].count("no values") == empty
         save(figure, tmp_path / "run.png")
 
 
 def test_the_pressure_on_a_cover():
     """Without the shear stress, which is not known there."""
-    rubber = vr.Material(E=2e6, nu=0.5, prony=vr.Prony([2.0, 6.0], [1.0, 0.01]), thickness=0.012)
+    rubber = replace(vr.Material.elastic(2e6, 0.5), thickness=0.012)
     belt = vr.Cylinder(R=0.1, m=40.0, material=vr.Material.rigid(), base=rubber, mu=0.5, load=2e3)
     found = belt.stress(np.linspace(-0.02, 0.02, 21), 1.0, delta=0.0)
     (axes,) = found.plot().axes

@@ -86,10 +86,6 @@ def long_or_short(examples):
 @given(scenes | arrays, one_or_three(speeds), one_or_three(creeps), st.booleans(), st.booleans())
 def test_contact(scene, V, creep, is_omega, slopes):
     state = vr.contact(scene, V, **{"omega" if is_omega else "delta": creep}, slopes=slopes)
-    check_state(scene, state)
-
-
-def check_state(scene, state):
     for name, values in state.as_dict().items():
         assert not np.isnan(values).any(), name
     for name in state.as_dict().keys() - {"zeta", "delta", "dQ_domega", "dQ_dV"}:
@@ -155,6 +151,3 @@ def test_the_ends_of_the_ranges(scene, V, creep, share):
     for call in calls:
         with contextlib.suppress(vr.ParameterError):
             call()
-
-
-# --- refusals ---

@@ -35,68 +35,39 @@ OMEGA = np.geomspace(1e-2, 1e2, 12)
 #: whole milliseconds, which a duration of pandas holds exactly
 TIMES = np.round(OMEGA, 3)
 CURVE = 1e6 * (1.0 + OMEGA**2 / (1.0 + OMEGA**2)), 1e6 * OMEGA / (1.0 + OMEGA**2)
+#: value -> arguments that have it
+VALUED = {
+    0.5: "V V0 omega omega0 rested j share R T_epsilon T_ref low M F Q sigma level",
+    0.25: "t thickness mu nu nu_instant",
+    0.125: "x T_sigma t0",
+    1e-3: "delta rest",
+    1.0: "speed gamma",
+    0.01: "force torque slope brake drag misfit",
+    1e-6: "rtol",
+    1e3: "density",
+    30.0: "temperature reference",
+    11.0: "alpha",
+    10.0: "kappa g",
+    40.0: "m",
+    2e6: "E",
+    400.0: "load pressed",
+    4e6: "E0 G0",
+    1e6: "G_inf",
+    1e9: "bulk",
+    1e5: "energy",
+    20.0: "T0",
+    17.0: "C1",
+    50.0: "C2",
+    4.0: "high",
+}
 #: a value of each argument, which goes with those of the others of its function
-SAMPLES = {
+SAMPLES = {name: value for value, names in VALUED.items() for name in names.split()} | {
     "roller": SCENE,
     "cylinder": CYLINDER,
     "prony": RUBBER.prony,
     "shift": vr.WLF(T0=20.0),
     "what": CYLINDER,
-    "V": 0.5,
-    "V0": 0.5,
-    "omega": 0.5,
-    "omega0": 0.5,
-    "t": 0.25,
-    "x": 0.125,
-    "delta": 1e-3,
-    "speed": 1.0,
-    "force": 0.01,
-    "torque": 0.01,
-    "slope": 0.01,
-    "brake": 0.01,
-    "drag": 0.01,
-    "rest": 1e-3,
-    "rested": 0.5,
-    "rtol": 1e-6,
-    "density": 1e3,
-    "thickness": 0.25,
-    "temperature": 30.0,
-    "reference": 30.0,
-    "alpha": 11.0,
-    "kappa": 10.0,
-    "mu": 0.25,
-    "gamma": 1.0,
-    "j": 0.5,
-    "share": 0.5,
-    "R": 0.5,
-    "m": 40.0,
-    "E": 2e6,
-    "nu": 0.25,
-    "T_epsilon": 0.5,
-    "T_sigma": 0.125,
-    "T_ref": 0.5,
-    "g": 10.0,
-    "nu_instant": 0.25,
-    "load": 400.0,
-    "pressed": 400.0,
-    "E0": 4e6,
-    "G0": 4e6,
-    "G_inf": 1e6,
-    "bulk": 1e9,
-    "energy": 1e5,
-    "T0": 20.0,
-    "C1": 17.0,
-    "C2": 50.0,
-    "low": 0.5,
-    "high": 4.0,
-    "misfit": 0.01,
-    "M": 0.5,
-    "F": 0.5,
-    "Q": 0.5,
-    "sigma": 0.5,
-    "t0": 0.125,
     "quantiles": (0.25, 0.75),
-    "level": 0.5,
 }
 #: moduli and times of the series of other programs
 OF_PROGRAMS = {
@@ -140,9 +111,10 @@ OWN = {
 NUMBERS = ("float", "ArrayLike", "Numbers", "Acting", "Course", "Any")
 NO_NUMBERS = ("Mapping", "Path", "Callable[[", "Iterable[str]", "Reasons", "Labels", "LawTable")
 #: left out: values that have a unit where they are used alone (tests of drives), files, mappings by
-#: name, results; ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
-LEFT_OUT = {
-    "ShiftFactors",  # its temperatures are a tuple: tests/test_dma.py
+#: name, results; a tuple of temperatures (tests/test_dma.py); heat (tests/test_heat.py);
+#: ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
+LEFT_OUT = [
+    "ShiftFactors",
     "Schedule",
     "Feedback",
     "read_dma",
@@ -167,8 +139,8 @@ LEFT_OUT = {
     "turning_points",
     "pair_temperatures",
     "conductance",
-    "uniform_temperature",  # of heat: tests/test_heat.py
-}
+    "uniform_temperature",
+]
 #: what has methods that take numbers
 MADE = {
     "Material": lambda: dataclasses.replace(RUBBER, shift=vr.WLF(T0=20.0)),

@@ -36,6 +36,10 @@ def of_dma(content):
     return vr.read_dma(file(content))
 
 
+def of_grid(table):
+    return vr.load_law(netcdf(table))
+
+
 REFUSED = [
     *each(
         of_dma,
@@ -69,11 +73,27 @@ REFUSED = [
         vr.FileError,
     ),
     *each(
+        of_grid,
+        {
+            "given.nc | V = | shape (0,) | must be real numbers, at least one": OTHER_GRID.isel(
+                V=slice(0)
+            ),
+            "given.nc: is not a grid of a law: variable 'M' is missing: must be given over "
+            "V": OTHER_GRID.drop_vars("M"),
+            "given.nc | unit of Q = N m2 | N/m": OTHER_GRID.assign(
+                Q=OTHER_GRID.Q.assign_attrs(units="N m2")
+            ),
+            "unit of V = missing | m/s, or 1 of a grid without dimension": OTHER_GRID.assign_coords(
+                V=OTHER_GRID.V.drop_attrs()
+            ),
+            "given.nc: is not a grid of a law: V must increase strictly, over at least two "
+            "nodes": OTHER_GRID.isel(V=[0]),
+        },
+        vr.FileError,
+    ),
+    *each(
         None,
         {
-            "given.nc | V = | shape (0,) | must be real numbers, at least one": lambda: vr.load_law(
-                netcdf(OTHER_GRID.isel(V=slice(0)))
-            ),
             "variable 'Q' is in 'N': must be in '1'": lambda: vr.tables.save(
                 grid().assign(Q=grid().Q.assign_attrs(units="N")), "x.nc"
             ),
@@ -113,18 +133,6 @@ REFUSED = [
             "is not a table of viscoroll": lambda: vr.tables.save(
                 grid().assign_attrs(viscoroll_table="other"), "x.nc"
             ),
-            "given.nc: is not a grid of a law: variable 'M' "
-            "is missing: must be given over V": lambda: vr.load_law(
-                netcdf(OTHER_GRID.drop_vars("M"))
-            ),
-            "given.nc | unit of Q = N m2 | N/m": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign(Q=OTHER_GRID.Q.assign_attrs(units="N m2")))
-            ),
-            "unit of V = missing | m/s, or 1 of a grid without dimension": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign_coords(V=OTHER_GRID.V.drop_attrs()))
-            ),
-            "given.nc: is not a grid of a law: V must increase strictly, over at least two "
-            "nodes": lambda: vr.load_law(netcdf(OTHER_GRID.isel(V=[0]))),
             "given.nc: is not a material file: it is a grid, for vr.load_law and "
             "vr.tables.interpolate": lambda: vr.Material.from_netcdf(netcdf(grid())),
             "coordinate 'alpha' must be > 0 and increase strictly": lambda: vr.load_law(

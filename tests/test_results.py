@@ -56,20 +56,15 @@ def test_each_shows_itself(results, tmp_path):
         assert result._repr_html_().startswith("<"), name
         data = result.to_xarray()
         for variable in () if name == "fit" else data.data_vars.values():
-            assert variable.attrs.get("units") or "flag_values" in variable.attrs, (
-                name,
-                variable.name,
-            )
-        write_dataset(data, tmp_path / "result.nc")
-        with xr.open_dataset(
-            tmp_path / "result.nc", engine="h5netcdf", decode_times=False
-        ) as stored:
+            assert {"units", "flag_values"} & variable.attrs.keys(), (name, variable.name)
+        path = tmp_path / "result.nc"
+        write_dataset(data, path)
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as stored:
             xr.testing.assert_equal(stored.load(), data)
         figure = result.plot()
         assert isinstance(figure, Figure)
-        figure.set_layout_engine(
-            "none"
-        )  # takes most of the time; figures of the program have theirs
+        # takes most of the time; figures of the program have theirs
+        figure.set_layout_engine("none")
         figure.draw_without_rendering()
         assert any(axes.get_xlabel() for axes in figure.axes), name
 

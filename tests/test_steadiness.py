@@ -82,9 +82,7 @@ def test_no_relaxation_time_bounds_it():
     nothing much.
     """
     draw = np.random.default_rng(1)
-    some = [
-        vr.Prony(10.0 ** draw.uniform(-2, 2, 4), 10.0 ** draw.uniform(-6, 2, 4)) for _ in range(20)
-    ]
+    some = vr.Prony(10.0 ** draw.uniform(-2, 2, (20, 4)), 10.0 ** draw.uniform(-6, 2, (20, 4)))
     for material in (
         *(vr.Prony([alpha - 1.0], [1.0 / alpha]) for alpha in (1.05, 11.0, 100.0, 1e4)),
         *some,
@@ -93,11 +91,8 @@ def test_no_relaxation_time_bounds_it():
         N = abs(law(vr.Scene(material=material, kappa=1.0, mu=0.5, gamma=1.5), V)[0])
         assert (N * V * V).max() <= tol.STEADINESS_BOUND * (1.0 - 1.0 / material.alpha)
     years = vr.Prony([0.1, 0.1, *DMA.E], [1e4, 1e2, *DMA.tau])
-    speeds = [
-        ROLLER.replace(material=each).validity(30.0).steady.ten_percent.speed
-        for each in (DMA, years)
-    ]
-    assert close(speeds[1], speeds[0], 0.1)
+    found, known = (ROLLER.replace(material=each).validity(30.0).steady for each in (years, DMA))
+    assert close(found.ten_percent.speed, known.ten_percent.speed, 0.1)
 
 
 # --- warnings of roll and ensemble ---

@@ -32,13 +32,6 @@ def kept(alpha):
     return True
 
 
-def test_made_once(folder):
-    assert [kept(number) for number in (2.0, 3.0, np.nextafter(3.0, 4.0), 2.0, 3.0)] == [
-        False
-    ] * 3 + [True] * 2
-    assert len(list(folder.iterdir())) == 3
-
-
 def test_what_others_may_have_written_is_not_read(folder):
     kept(2.0)
     (path,) = folder.iterdir()

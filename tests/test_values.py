@@ -20,9 +20,9 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_waves():
     """A fifth of sqrt(G/density) in SI; the circumference counts."""
     wave = math.sqrt(2.3e5 / 2.98 / 1130.0)
-    assert PAPER_CYLINDER.validity(
-        np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT * wave, density=1130.0
-    ).quasistatic.holds.tolist() == [True, False, False]
+    beside = np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT * wave
+    found = PAPER_CYLINDER.validity(beside, density=1130.0)
+    assert found.quasistatic.holds.tolist() == [True, False, False]
     found = PAPER_CYLINDER.validity(0.1 * wave, omega=5.0 * wave, density=1130.0)
     assert close((found.quasistatic.value, found.creep.value), (0.5, 4.0), tol.PAIR)
     assert not found.creep.holds
@@ -34,10 +34,9 @@ def test_validity():
     elastic = vr.Material.elastic(1e6, 0.3)
     on_steel = pair(SOFT, STEEL)
     # a parabola is 1 % off the circle where the contact is said to be no longer small
-    assert [
-        vr.presets.PAPER_SECTION_5.replace(kappa=kappa).validity(V).small_contact.holds
-        for kappa, V in ((2.921, 0.0), (2.0, 0.0), (2.0, 30.0))
-    ] == [True, False, True]
+    for kappa, V, holds in ((2.921, 0.0, True), (2.0, 0.0, False), (2.0, 30.0, True)):
+        found = vr.presets.PAPER_SECTION_5.replace(kappa=kappa).validity(V)
+        assert found.small_contact.holds == holds
     assert close((1.0 - math.sqrt(1.0 - REACH_LIMIT**2)) / (0.5 * REACH_LIMIT**2) - 1.0, 0.01, 0.05)
     # 0.5 (G_1 (1 - 2 nu_2) - G_2 (1 - 2 nu_1))/(G_1 (1 - nu_2) + G_2 (1 - nu_1)), of long times
     # and at once
@@ -50,20 +49,12 @@ def test_validity():
     assert close(pair(elastic, rigid).pair.dundurs, 2 * (-0.4 / 1.4,), tol.PAIR)
     # plane stress, k = (3 - nu)/(1 + nu): even an incompressible disc on a rigid base is coupled,
     # by -(1 - nu)/2
-    assert close(
-        pair(vr.Material.elastic(1e6, 0.5), rigid, plane="stress").pair.dundurs,
-        (-0.25, -0.25),
-        tol.PAIR,
-    )
+    disc = pair(vr.Material.elastic(1e6, 0.5), rigid, plane="stress")
+    assert close(disc.pair.dundurs, (-0.25, -0.25), tol.PAIR)
     # waves: the slowest of those that are known
-    assert close(
-        [
-            pair(*bodies).validity(1.0).quasistatic.value
-            for bodies in ((SOFT, None), (SOFT, HEAVY), (HEAVY, SOFT), (SOFT, rigid))
-        ],
-        np.full(4, 1.0 / math.sqrt(SOFT.G / 1100.0)),
-        tol.PAIR,
-    )
+    for bodies in ((SOFT, None), (SOFT, HEAVY), (HEAVY, SOFT), (SOFT, rigid)):
+        slowest = pair(*bodies).validity(1.0).quasistatic.value
+        assert close(slowest, 1.0 / math.sqrt(SOFT.G / 1100.0), tol.PAIR)
 
 
 def test_labels_of_xarray_and_pandas():
@@ -85,15 +76,9 @@ def test_labels_of_xarray_and_pandas():
         assert steady.loss.slip.dims == ("run", "equilibrium")
         assert b.steady(slope=3.5 * LABELLED).count.sel(run="b").item() == 0
         assert b.steady(slope=0.0001 * FRAME["V"]).V.loc["y", 0] == plain.V[1, 0]
-        assert list(
-            b.ensemble(
-                LABELLED,
-                0.0,
-                [0.001],
-                slope=0.01 * LABELLED,
-                force=vr.Schedule([0.0, 1.0], [0.0, 0.0]),
-            ).to_xarray()["motion"]
-        ) == ["a", "b"]
+        force = vr.Schedule([0.0, 1.0], [0.0, 0.0])
+        motions = b.ensemble(LABELLED, 0.0, [0.001], slope=0.01 * LABELLED, force=force)
+        assert [*motions.to_xarray()["motion"]] == ["a", "b"]
 
 
 def test_slopes_and_states_at_rest():

@@ -528,9 +528,6 @@ COVER_THIN = 0.08
 COVER_PRESSURE = 1e-11
 #: The moment of the pressure against M, over the larger of M and lam: M is a difference of both.
 COVER_MOMENT = 1e-10
-#: The slope by transforms on a grid of 256 cells for half a contact, over lam: roots at the edges
-#: cost cells^(-3/2).
-COVER_SLOPE = 1e-3
 #: The header of C against contact: states and slopes, over their condition number where omega - V
 #: is rounded; Q and delta_0 over their largest.
 COVER_IN_C = 1e-11
