@@ -340,15 +340,8 @@ def test_a_roller_of_c_in_steps_of_any_length(roller, name, calls, rest):
     gamma = 0.5
     end = 40.0
     status, *found = c_rolled(roller, gamma, force, torque, rest, V, slip, end, calls, 1e-9)
-    motion = vr.roll(
-        vr.Scene(11.0, 10.0, 0.3, gamma),
-        V,
-        V + slip,
-        [end],
-        rtol=1e-11,
-        force=force or None,
-        torque=torque or None,
-    )
+    loads = {"force": force or None, "torque": torque or None}
+    motion = vr.Scene(11.0, 10.0, 0.3, gamma).roll(V, V + slip, [end], rtol=1e-11, **loads)
     exact = np.array([motion.V[0], motion.omega[0], motion.x[0]])
     assert status == 0
     assert close(np.array(found), exact, tol.INTEROP_TURNED, scale=np.abs(exact).max())
