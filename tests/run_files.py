@@ -187,8 +187,19 @@ rested = 60.0
 keep = "all"
 fields = ["V", "omega", "x", "work_torque"]
 """
+WARM = CERTAIN.replace(
+    "0.5\n",
+    """0.5
+prony = { E = [U(1.0, 1.0), 2.0], tau = [1.0, 0.1] }
+T_ref = 0.01
+wlf = { T0 = 20.0, C1 = 8.86, C2 = 101.6 }
+temperature = U(10.0, 30.0)
+""",
+    1,
+)
 FILES = {
     "a preset": FULL,
+    "a temperature each": WARM,
     "strengths": STRENGTHS,
     "compliances": COMPLIANCES,
     "numbers": NUMBERS,

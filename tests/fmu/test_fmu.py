@@ -164,34 +164,31 @@ def test_element_has_forces_and_slopes_of_the_law(built, name):
             assert close(found, slopes[:, n], tol.FMU_SLOPES, scale=size)
 
 
+def assert_slopes(slopes, values, at, steps):
+    """Columns of slopes are difference quotients of the values, a function of all that is given."""
+    for column, (name, value), h in zip(slopes.T, at.items(), steps, strict=True):
+        ends = {k: values(at | {name: value + k * h}) for k in (-2, -1, 1, 2)}
+        quotient = (8.0 * (ends[1] - ends[-1]) - (ends[2] - ends[-2])) / (12.0 * h)
+        assert close(column, quotient, tol.FMU_QUOTIENTS, scale=np.abs(quotient).max()), name
+
+
 @pytest.mark.parametrize("v", [-2.0, 4e-7, 0.0])
 def test_slopes_of_the_element_are_those_of_its_forces(built, v):
     """By v, omega and load, below v_min too, where the law is that of v_min; adjoint ones alike."""
-    with opened(built("unlike", "ContactElement")) as element:
-        at = {
-            "v": v,
-            "omega": (v - 1e-3 * max(abs(v), 1e-6)) / CYLINDERS["unlike"].R,
-            "load": 2000.0,
-        }
+    speed = max(abs(v), 1e-6)
+    at = {"v": v, "omega": (v - 1e-3 * speed) / CYLINDERS["unlike"].R, "load": 2000.0}
+    with opened(built("unlike", "ContactElement"), **at) as element:
 
-        def forces(**changed):
-            element.set(**(at | changed))
+        def forces(given):
+            element.set(**given)
             return element.get(*OUTPUTS)
 
-        element.set(**at)
         slopes = element.slopes(OUTPUTS, tuple(at))
-        for column, (name, value) in zip(slopes.T, at.items(), strict=True):
-            h = 1e-5 * (
-                2000.0 if name == "load" else max(abs(v), 1e-6) * (1.0 if name == "v" else 20.0)
-            )
-            ends = {k: forces(**{name: value + k * h}) for k in (-2, -1, 1, 2)}
-            quotient = (8.0 * (ends[1] - ends[-1]) - (ends[2] - ends[-2])) / (12.0 * h)
-            assert close(column, quotient, tol.FMU_QUOTIENTS, scale=np.abs(quotient).max()), name
-        element.set(**at)
         for row, seed in zip(slopes, np.eye(4), strict=True):
             given = element.at(OUTPUTS), element.at(at), seed.tolist()
             adjoint = element.fmu.getAdjointDerivative(*given, len(at))
             assert close(np.array(adjoint), row, tol.FMU_ROUNDED)
+        assert_slopes(slopes, forces, at, [1e-5 * speed, 2e-4 * speed, 0.02])
 
 
 #: thrown, and thrown the other way with a drive: V0, omega0, force, torque over the weight
@@ -454,30 +451,19 @@ def test_a_state_has_its_mode_and_initialization_has_the_speeds_of_the_start(bui
 
 
 def test_slopes_of_the_roller_are_those_of_its_rates(built):
-    cylinder = CYLINDERS["alike"]
-    knowns = ("v", "slip", "x", "drive_force", "drive_torque")
     unknowns = ("der_v", "der_slip", "der_x", "v", "slip", "x", "omega")
-    with opened(built("alike"), v0=1.0, omega0=0.999 / cylinder.R, drive_force=3.0) as roller:
-        slopes = roller.slopes(unknowns, knowns)
+    at = {"v": 1.0, "slip": -1e-3, "x": 0.0, "drive_force": 3.0, "drive_torque": 0.0}
+    with opened(built("alike")) as roller:
         roller.fmu.enterContinuousTimeMode()
-        h = 1e-6
-        start = roller.get("v", "slip", "x")
 
-        def around(column, by):
-            if column < 3:
-                roller.fmu.setContinuousStates(*_pointer(start + by * np.eye(3)[column]))
-            else:
-                roller.fmu.setContinuousStates(*_pointer(start))
-                roller.set(drive_force=3.0 + by * (column == 3), drive_torque=by * (column == 4))
+        def rates(given):
+            v, slip, x, force, torque = given.values()
+            roller.fmu.setContinuousStates(*_pointer([v, slip, x]))
+            roller.set(drive_force=force, drive_torque=torque)
             return roller.get(*unknowns)
 
-        for column in range(5):
-            step = h if column < 3 else 1.0
-            quotient = (around(column, step) - around(column, -step)) / (2.0 * step)
-            scale = np.maximum(np.abs(quotient).max(), np.abs(slopes).max() * 1e-6)
-            assert close(slopes[:, column], quotient, tol.FMU_QUOTIENTS, scale=scale), knowns[
-                column
-            ]
+        rates(at)
+        assert_slopes(roller.slopes(unknowns, at), rates, at, [1e-5, 1e-5, 1e-5, 1.0, 1.0])
 
 
 def _pointer(values):

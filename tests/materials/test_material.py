@@ -33,7 +33,6 @@ def test_moduli_are_the_sums_over_modes():
     assert close(RUBBER.tan_delta(OMEGA), exact.imag / exact.real, tol.MATERIAL)
     far = [1e200, 1e308]
     assert close(RUBBER.storage(far), RUBBER.instant, tol.MATERIAL)
-    assert close(RUBBER.loss(far), 0.0, tol.MATERIAL, scale=RUBBER.E)
     times = RUBBER.T_ref * RUBBER.prony.tau
     spelt_out = RUBBER.E * (
         1.0 + sum(E * np.exp(-T / tau) for E, tau in zip(RUBBER.prony.E, times, strict=True))
@@ -100,7 +99,6 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
         vr.Material.ansys(1e6, nu, g, tau, k=k),
         vr.Material.comsol(2.0 * (1.0 + late) * G_inf, late, g * G0, tau, K=k * K0),
         vr.Material.lsdyna(g * G0, 1.0 / tau, nu=late, G_inf=G_inf, K=k * K0),
-        vr.Material.lsdyna(g * G0, 1.0 / tau, bulk=K_inf, G_inf=G_inf, K=k * K0),
         vr.Material.lsdyna([*g * G0, G_inf], [*1.0 / tau, 0.0], K=[*k * K0, K_inf]),
     ):
         assert close(found.nu, late, tol.MATERIAL_FORMS)
@@ -114,7 +112,6 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
     [
         lambda: vr.Material.lsdyna(G=[1e6, 1e6], beta=[10.0, 0.0], K=[0.0, 2000.0]),
         lambda: vr.Material.comsol(1e6, 0.3, G=[9e6], tau=[1.0], K=[20.0]),
-        lambda: vr.Material.comsol(1e6, 0.4, G=[1e6, 2e5], tau=[1.0, 1e-3], K=[1e3, 2e3]),
         # only between the two relaxation times
         lambda: vr.Material.abaqus(1e7, 0.49, [0.001, 0.9], [1e-3, 1.0], k=[0.99, 0.0]),
     ],
@@ -135,9 +132,7 @@ STORED = (
         'the "soft" one',
         1100.0 / 3.0,
     ),
-    vr.Material.sls(2.3e5, 0.49, 10.7, 0.97),
     vr.Material(3e6, 0.5, vr.Prony.creep([0.3, 0.69], [3.0, 1e-5], alpha=100.00000000000001)),
-    vr.Material.elastic(2e11, 0.3),
     vr.Material.rigid(name="ideal"),
     vr.Material.elastic(1e6, 0.3, name="tread \U0001f6de, Gummi für µ\tand\x7f\n"),
     vr.Material(
@@ -148,7 +143,6 @@ STORED = (
         measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f", ((0.1, 0.3), (1.0, 0.1))),
         temperature=-1.0 / 3.0,
     ),
-    vr.Material.ansys(1e7, 0.4, [0.5, 0.4], [0.1, 10.0], k=[0.0, 0.0]),
 )
 
 

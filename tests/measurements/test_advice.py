@@ -55,22 +55,10 @@ CASES = {
     ),
     "a gap": (RIGHT + "200;nan;2\n", "remove its row", without("200;nan")),
     "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
-    "a negative loss modulus": (RIGHT + "200;9;-2\n", "remove the row", without("200;9")),
-    "thousands": (THOUSANDS, "write only decimal marks", change(",", "")),
-    "a footer of means": (
-        RIGHT + "Mean;9;2\n\nStd;3;1\n",
-        "'Mean' is not a number: remove its row",
-        without("Mean|Std"),
-    ),
     "words among the rows": (
         RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n",
         "remove it",
         without("sample"),
-    ),
-    "words among the rows, in a comment": (
-        RIGHT + "slipped\n<f; S/1e6; L/1e6>\n",
-        "begin it with #",
-        change("slipped", "# s"),
     ),
     "words above the rows": (
         "f [Hz];E' [MPa];E'' [MPa]\nmade;by;me\n<f; S/1e6; L/1e6>\n",
@@ -84,21 +72,8 @@ CASES = {
         give(columns={"frequency": "column 0"}),
         "rename or remove one in the file",
     ),
-    "two rows of headings, numbers above": (
-        ",20,,30,\nw,Gp,Gpp,Gp,Gpp\n<w; S; L; S/2; L/2>\n",
-        "keep it and the columns of one of its numbers",
-        lambda text, *_: (
-            "".join(",".join(line.split(",")[:3]) + "\n" for line in text.split("\n")),
-            {},
-        ),
-    ),
     "different headings": (
         RIGHT + "f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n",
-        "keep one of them",
-        lambda text, *_: (text[: text.rindex("f [Hz]")], {}),
-    ),
-    "two tables": (
-        RIGHT + RIGHT,
         "keep one of them",
         lambda text, *_: (text[: text.rindex("f [Hz]")], {}),
     ),
@@ -152,23 +127,8 @@ CASES = {
         "or give units=",
         give(units={"angular frequency": "rad/s"}),
     ),
-    "an angular frequency in Hz, renamed": (
-        "Angular frequency [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n",
-        "rename it 'frequency'",
-        change("Angular ", ""),
-    ),
-    "frequencies that contradict, the first": (
-        "Angular frequency [1/s];Frequency [Hz];E' [MPa];E'' [MPa]\n<w; w; S/1e6; L/1e6>\n",
-        "choose by",
-        quoted(0),
-    ),
     "frequencies that contradict, the second": (
         "Angular frequency [1/s];Frequency [Hz];E' [MPa];E'' [MPa]\n<f; f; S/1e6; L/1e6>\n",
-        "choose by",
-        quoted(1),
-    ),
-    "tan delta and a phase angle": (
-        "f [Hz];Phase [rad];E' [MPa];E'' [MPa];tan_delta\n<f; 0.9*tan; S/1e6; L/1e6; tan>\n",
         "choose by",
         quoted(1),
     ),

@@ -62,3 +62,14 @@ def test_each_file(title, tmp_path):
     assert len(shown.splitlines()) == 3
     for word in case.get("says", []):
         assert word in shown, shown
+
+
+@pytest.mark.parametrize(("factor", "count"), [(0.85, 1), (0.95, 0)])
+def test_rows_of_one_frequency_that_differ_are_said(tmp_path, factor, count):
+    """Two sweeps that nothing tells apart, 15 % apart, give a warning; repeats within 5 % none."""
+    text = "part;w [rad/s];E' [Pa];E'' [Pa]\n<one; w; S; L>\n<one; w; {0}*S; {0}*L>\n"
+    path = written(tmp_path, {"text": text.format(factor), "sep": ";"})
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        vr.read_dma(path)
+    assert len(said) == count
