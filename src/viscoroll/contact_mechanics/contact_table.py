@@ -518,8 +518,8 @@ class Contacts(NamedTuple):
         return evaluate_law(self.law, state, shape=V.shape, creep_is_omega=False, names=names)
 
     def free_creep(self, V: Floats) -> Any:
-        """Return delta_0 at V > 0, (n,), the creepage of free rolling, at which Q = 0; it does not
-        depend on mu.
+        """Return delta_0 at V > 0, (n,), the creepage without creep force, at which Q = 0; it does
+        not depend on mu.
 
         Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it, and of a
         table; the float 0.0 of half-spaces.

@@ -340,7 +340,7 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
 ELEMENTS = 72
 #: Elements of states of which only the zones of stick and slip are needed.
 _ROUGH_ELEMENTS = 40
-#: Absolute error of the reduced creepage of free rolling.
+#: Absolute error of the reduced creepage without creep force.
 _FREE_CREEP_ERROR = 1e-9
 #: Length of an edge layer, divided by l0, below which the mesh has additional elements there.
 _UNLAYERED = 1e-3

@@ -345,7 +345,7 @@ def torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Fl
     force, torque : loads divided by P and by P R, (n,) each.
     Returns the torque that is not balanced, divided by P R, (n,).  On a table the part of the force
     that the friction cannot balance is subtracted too.  The moments of a cover without traction are
-    those of the creepage of free rolling, where Q = 0.
+    those of the creepage without creep force, where Q = 0.
     """
     if contacts.law.coupled is not None:
         delta, unbalanced_force = balance(contacts, V, -force)

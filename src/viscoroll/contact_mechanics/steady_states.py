@@ -159,7 +159,7 @@ class States(NamedTuple):
         """Return the states of V = omega = 0, the limit of slow rolling.
 
         The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its
-        creepage of free rolling are used.  A disturbance decays as V' = -rate V, with omega in
+        creepage without creep force are used.  A disturbance decays as V' = -rate V, with omega in
         proportion to V.
 
         loads : the loads, dimensionless; all but V and ``shape`` is read.  Q balances the torque,

@@ -72,7 +72,7 @@ class Shear(NamedTuple):
     comes first.
 
     moments : M/V of each body, with M divided by P R and V by R/T_ref, (2,).
-    free : parts of each body in the creepage of free rolling with stick, (2,).
+    free : parts of each body in the creepage without creep force with stick, (2,).
     mirrored : parts of each body in delta_0*, (2,).
     load : relative change of H with Q at fixed z, in full slip.
     shift : change of the shift g with Q at fixed z.

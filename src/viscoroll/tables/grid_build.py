@@ -5,8 +5,8 @@ or ratios (:func:`spread`), and of creepage for the onset of full slip at every 
 Fields: beta, length of the stick zone divided by contact length; Q, creep force; lam, contact
 length divided by that at rest; epsilon, shift of the contact in half contact lengths; M, rolling
 moment, and its parts M_half_space and M_cylinder; delta_star, creepage at which full slip begins;
-delta_0, creepage of free rolling, of a layer; zeta, time in which a point passes through half the
-contact.
+delta_0, creepage without creep force, of a layer; zeta, time in which a point passes through half
+the contact.
 """
 
 from __future__ import annotations

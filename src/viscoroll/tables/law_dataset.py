@@ -270,7 +270,7 @@ def _measured_errors_of_cover(
     else:
         found = table.cover.creep[1:, 0, :1]
     errors = dict(zip(COVER_FUNCTIONS[1:], (found - by_shear) / L, strict=True))
-    # at the creepage of free rolling there is no traction
+    # at the creepage without creep force there is no traction
     free = 0.5 * (found[0] + found[1])  # kappa delta, from the parts of both bodies
     values = Contacts(table, 1.0, 1.0).fields(u, free, *_COVER_FIELDS)
     # at kappa = mu = 1 the limit L is 2 delta_star

@@ -23,5 +23,5 @@ limit holds.  V = 0 and full slip need nothing special.
 
 A cover of finite thickness (:mod:`.cover_law`) has rows of its own of these functions, with L = 2
 kappa delta_star/mu and with (H/F^2)(2 u/L) = 1/L^2 and (eta/F)(2 u/L) = lam/L; and D counts from
-the creep of free rolling, delta_0(u).
+the creep at Q = 0, delta_0(u).
 """

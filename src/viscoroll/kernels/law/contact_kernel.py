@@ -271,8 +271,8 @@ def signed_creep(L, free_creep, asymmetry, state, law):
     given.
 
     L : float, 2 kappa delta_star/mu at the speed of the state, dimensionless, > 0.
-    free_creep, asymmetry : floats, 2 kappa delta_0, with delta_0 the creepage of free rolling, and
-        the asymmetry c, dimensionless; not read for half-spaces.
+    free_creep, asymmetry : floats, 2 kappa delta_0, with delta_0 the creepage without creep force,
+        and the asymmetry c, dimensionless; not read for half-spaces.
     state : :class:`.law_record.State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
     law : :class:`.law_record.Law`, of which only ``cover_rows`` is read: whether the material is a
     cover (not None).
@@ -482,7 +482,7 @@ def _write_other_fields(n, c, law, scratch, request):
         n in the rows of the requested quantities are written, dimensionless.
 
     Returns nothing.  The quantities: delta_star (critical creepage), delta (creepage), delta_0
-    (creepage of free rolling), delta_minus and delta_plus (onsets of full slip),
+    (creepage without creep force), delta_minus and delta_plus (onsets of full slip),
     full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length divided by l0), zeta (half the
     transit time divided by T_ref), epsilon (shift of the contact ahead of the axis, in half contact
     lengths), beta (stick zone divided by the contact length), dQ_dV, dQ_ddelta, dQ_domega, dM_dV,

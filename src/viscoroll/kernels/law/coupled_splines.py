@@ -61,7 +61,7 @@ HEAD = 16
 MIDDLE = 0
 #: Edge: the onset of full slip of negative sign; that of positive sign follows.
 ONSET = 1
-#: Edge: the creep of free rolling, at which Q = 0.
+#: Edge: the creep at which Q = 0.
 FREE = 3
 #: Number of edges; each has a value and a slope over ln u in a row.
 EDGE_COUNT = 4

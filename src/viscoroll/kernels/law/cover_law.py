@@ -12,7 +12,7 @@ Letters: kappa = R/l0, mu the coefficient of friction; Q the traction, |Q| <= mu
 delta_star/mu with the critical creepage delta_star; lam, length of the contact divided by l0, and
 epsilon, its shift in half contact lengths, functions of u (lam_0 and epsilon_0 without traction);
 eta, half the transit time of the stick zone, and eta/F, a function of v = 1/F(eta)
-(:mod:`.law_functions`); delta_0, the creepage of free rolling.  b stands for the base, the body
+(:mod:`.law_functions`); delta_0, the creepage without creep force.  b stands for the base, the body
 called half-space, c for the cylinder.
 
 With delta_0 = (f_b + f_c)/(2 kappa),
@@ -106,7 +106,7 @@ COVER_ROW_SIZE = 3 * _PAIR_SIZE
 
 
 class FreeCreep(NamedTuple):
-    """Parts that the creepage of free rolling, delta_0, adds to the kinematics omega = V (1 +
+    """Parts that the creepage without creep force, delta_0, adds to the kinematics omega = V (1 +
     delta_0 + k L d).
 
     Here k = mu/(2 kappa) and L = 2 kappa delta_star/mu; d stands for (delta - delta_0)/delta_star.
@@ -592,7 +592,7 @@ def creep_of_state(D, delta, L, free_creep, asymmetry, state, cover_rows):
     delta : float, creepage (omega - V)/V, dimensionless; infinite at V = 0 if omega is given and
     not 0.
     L, free_creep, asymmetry : floats, 2 kappa delta_star/mu, 2 kappa delta_0, with delta_0 the
-        creepage of free rolling, and c, dimensionless; read of a cover alone.
+        creepage without creep force, and c, dimensionless; read of a cover alone.
     state : :class:`.law_record.State`, of which kappa, mu and the sign of V are read, of a cover
     alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
@@ -655,7 +655,8 @@ def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
 
 @inline_kernel
 def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
-    """Return what the creepage of free rolling adds to the kinematics of partial slip at one speed.
+    """Return what the creepage without creep force adds to the kinematics of partial slip at one
+    speed.
 
     pairs : :class:`Pairs` at that speed, of which f of ``total``, with its derivatives, is read.
     u : float, kappa |V|, dimensionless, >= 0.

@@ -295,7 +295,7 @@ def body_moments(position, u, law):
 
 @inline_kernel
 def free_creep_and_slopes(u, law):
-    """Return 2 kappa delta_0, from the creepage of free rolling, with its first two derivatives
+    """Return 2 kappa delta_0, from the creepage without creep force, with its first two derivatives
     over u.
 
     It is :func:`.cover_law.free_creep_at` for callers that have not located u.
@@ -310,7 +310,7 @@ def free_creep_and_slopes(u, law):
 
 @inline_kernel
 def limits_at_rest(kappa, law):
-    """Return L = 2 kappa delta_star/mu and the creepage of free rolling in the limit V -> 0.
+    """Return L = 2 kappa delta_star/mu and the creepage without creep force in the limit V -> 0.
 
     The departure from rest and the exponential decay of a motion are decided with them.
 

@@ -429,7 +429,7 @@ def _write_state(table, given, n, request):
         stick = value_at(STICK, at.cell, table)  # a spline may pass 0 and 1 by its error
         write_field(to.beta, min(max(stick, 0.0), 1.0), n, request)
     # delta_star is the distance of the onset on the side of the state from free rolling: the side
-    # is that of the creep of free rolling here, of the middle creep in ``at``.
+    # is that of the creep at Q = 0 here, of the middle creep in ``at``.
     if max(to.delta_star, to.delta_0) >= 0:
         free = edge_at(FREE, at.u, at.speed, table).value
         onset = edge_at(ONSET + np.int64(D >= free), at.u, at.speed, table).value

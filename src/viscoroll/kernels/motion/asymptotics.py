@@ -310,8 +310,8 @@ def coast_to_end(state, regime, step_state, work):
 
     Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the
     feedback, in the limit V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass;
-    :func:`.motion_law.free_decay` has it for covers too.  delta_0 is the creepage of free rolling
-    for V -> 0, 0 for half-spaces.
+    :func:`.motion_law.free_decay` has it for covers too.  delta_0 is the creepage without creep
+    force for V -> 0, 0 for half-spaces.
 
     With a rest threshold the motion ends when the larger speed has fallen to it; an output at that
     very time still moves.  From then on V = omega = delta = 0, forces of 0 and the code AT_REST are

@@ -15,8 +15,8 @@ where omega' = 0, and under a force close to the limit of friction the departure
 
 Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
-- L = 2 kappa delta_star/mu and delta_0, the creepage of free rolling, in the limit V -> 0: 1 and 0
-  for half-spaces.
+- L = 2 kappa delta_star/mu and delta_0, the creepage without creep force, in the limit V -> 0: 1
+  and 0 for half-spaces.
 - d of a cover: d + c d^2 = (delta - delta_0)/delta_star.
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega

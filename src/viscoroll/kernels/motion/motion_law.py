@@ -492,7 +492,7 @@ def free_decay(work):
     in the limit V -> 0.
 
     With a_b and a_c, the factors of Q by which shear acts back on M
-    (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage of free rolling,
+    (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage without creep force,
     V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c) Q - M_cylinder, with
     moments without traction and feedback f and q in proportion to V.  Q is eliminated: with a = 1 +
     a_b, b = 1 - a_c and J = j (1 + delta_0)
@@ -648,8 +648,8 @@ def critical_creepage(V, sigma, scene):
     """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips,
     dimensionless.
 
-    On a cover it is the excess over the creepage of free rolling, delta_star (1 + sigma c).  It is
-    above 0, even in V, and of half-spaces mu L/(2 kappa) with L of :func:`rest_limits` at V = 0.
+    On a cover it is the excess over the creepage without creep force, delta_star (1 + sigma c).  It
+    is above 0, even in V, and of half-spaces mu L/(2 kappa) with L of :func:`rest_limits` at V = 0.
 
     V: float, speed of the axis of either sign, finite, dimensionless.
     sigma: float, sign of the slip, 1.0 or -1.0, on which that of a cover depends.
@@ -740,9 +740,9 @@ def omega_and_delta(state, regime, scene):
     regime: Regime, whose ``full_slip`` tells what the second unknown is.
     scene: Scene, of which kappa, mu and ``law`` are read, in partial slip only.
     Returns (omega, delta), floats, dimensionless, omega in the direction of the regime.  On a cover
-    delta contains the creepage of free rolling.  At V = 0 in partial slip omega is 0 and delta is
-    its limit; in full slip delta is then infinite with the sign of omega, +inf where omega is 0 too
-    (-inf for omega = -0.0).
+    delta contains the creepage without creep force.  At V = 0 in partial slip omega is 0 and delta
+    is its limit; in full slip delta is then infinite with the sign of omega, +inf where omega is 0
+    too (-inf for omega = -0.0).
     """
     if not regime.full_slip:
         delta = creepage(state.V, state.omega_or_d, scene)

@@ -7,8 +7,8 @@ above it and -1 below it; on either side full slip begins at an onset D_sigma(u)
 - D_0)/(D_sigma - D_0) is 0 at the middle creep and 1 at the onset.
 
 The second unknown of partial slip is d = sigma w: 2 kappa delta = D_0 + mu L d, where mu L = sigma
-(D_sigma - D_0) is the distance of the onset of sigma from D_0.  So D_0 stands where the creepage of
-free rolling stands in the equations of a cover (:mod:`.rhs`), and L depends on sigma.
+(D_sigma - D_0) is the distance of the onset of sigma from D_0.  So D_0 stands where the creepage
+without creep force stands in the equations of a cover (:mod:`.rhs`), and L depends on sigma.
 
 ``table`` is None for a law without one: then functions return what their callers found on the rows
 of the law (``rows``), and nothing of a table is compiled.  All is dimensionless: speeds in
