@@ -351,7 +351,7 @@ class Estimate:
     seconds: float
     memory: float
     stored: float
-    law_seconds: float = 0.0
+    law_seconds: float
 
     def __str__(self) -> str:
         """Return the estimate in words, five lines.
