@@ -471,10 +471,7 @@ def _record(path: Path, content: Any, number: int) -> Record:
     for name in ("columns", "units"):
         check_keys(path, f"{header}.{name}", getattr(section, name), columns)
     more: Any = {name: getattr(section, name) for name, *_ in own}
-    more = {
-        name: None if value == _UNKNOWN and name != "name" else value
-        for name, value in more.items()
-    }
+    more |= {name: None for name in more if more[name] == _UNKNOWN and name != "name"}
     try:
         return kind(**more, **_columns(path.parent / section.file, kind, section))
     except ParameterError as error:

@@ -74,17 +74,18 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     another dimension, and for temperatures that are no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
-    columns = tuple(
+    converted = (
         to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True)
     )
     columns = tuple(
-        [*np.asarray(each)] if getattr(each, "ndim", 0) == 2 else each for each in columns
+        [*np.asarray(each)] if getattr(each, "ndim", 0) == 2 else each for each in converted
     )
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
-        sizes, *others = ([np.size(curve) for curve in column] for column in columns)
-        for name, other in zip(Curve._fields[1:], others, strict=True):
+        sizes = [*map(np.size, columns[0])]
+        for name, column in zip(Curve._fields, columns, strict=True):
             # a curve that one of the lists lacks counts as one without points
-            for n, (own, wanted) in enumerate(zip_longest(other, sizes, fillvalue=0), 1):
+            of_curves = zip_longest(map(np.size, column), sizes, fillvalue=0)
+            for n, (own, wanted) in enumerate(of_curves, 1):
                 if own != wanted:
                     raise described_error(
                         name, f"has {own} points in curve {n}", f"as many as omega, {wanted}"
