@@ -168,8 +168,7 @@ SCENE = option(
     "scene",
     metavar="SCENE",
     help="TOML file with [cylinder] (all numbers are in SI units), or with [scene] or preset (all "
-    "numbers are "
-    "dimensionless); or the name of a preset (dimensionless)",
+    "numbers are dimensionless); or the name of a preset (dimensionless)",
 )
 #: Output of a table of numbers: to a file, or to standard output in a format.
 TABLE = [

@@ -347,8 +347,7 @@ def _print_size(path: Path) -> None:
         metavar="MATERIAL",
         nargs="?",
         help="TOML file with [material] (and [base]), [scene] or [cylinder], netCDF file of a "
-        "material, or name "
-        "of a preset",
+        "material, or name of a preset",
     ),
     option(
         "--alpha",

@@ -525,11 +525,13 @@ def plot(arguments: Namespace) -> None:
     }
     path = arguments.what
     if (draw := kinds.get(Path(path).suffix.lower())) is None:
-        sentence = (
+        raise vr.ParameterError(
+            "plot",
+            path,
+            "a file to plot",
             f"{path!r} is not a file that can be plotted: give FILE.nc, SCENE.toml, "
-            "MATERIAL.toml or STORE.zarr"
+            "MATERIAL.toml or STORE.zarr",
         )
-        raise vr.ParameterError("plot", path, "a file to plot", sentence)
     save(draw(path), arguments.output)
 
 

@@ -359,8 +359,11 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
-        allowed = "a law without one, which FMUs do not read (tables.export writes it to .h, for C)"
-        raise described_error("given", "is a table of the coupled solution", allowed)
+        raise described_error(
+            "given",
+            "is a table of the coupled solution",
+            "a law without one, which FMUs do not read (tables.export writes it to .h, for C)",
+        )
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
     l0 = _contact_length_of_cover(table)
@@ -421,8 +424,9 @@ def _warn_of_fast_law(given: Any, table: LawTable) -> None:
             return
         speeds = given.l0 / given.T_ref * np.logspace(-3.0, 3.0, 61)
         error = given.replace(coupled=False).validity(speeds).traction.sentence
-    text = f"the FMU has the fast law of a cover, not a table of the coupled solution: {error}"
-    warn_of_model(text)
+    warn_of_model(
+        f"the FMU has the fast law of a cover, not a table of the coupled solution: {error}"
+    )
 
 
 def _contact_length_of_cover(table: LawTable) -> float:

@@ -356,12 +356,11 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     # a phase angle of rubber in degrees goes above pi/2
     open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
     if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
-        problem = (
+        raise FileError(
+            table.path,
             f"column {column.heading!r} has no unit, and its largest value is {values.max():g}: "
-            "give "
-            f"units={{{name!r}: ...}}"
+            f"give units={{{name!r}: ...}}",
         )
-        raise FileError(table.path, problem)
     if column.log:
         values = column.log**values
         # the derivative of log^x is log^x ln(log): half a digit of x, carried to first order

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import product
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -394,23 +394,9 @@ def _warn_of_per_cent(table: Table, taken: list[Column]) -> None:
                 warn_of_model(f"{text} if it is in per cent, '1' if not")
 
 
-class _Choice(NamedTuple):
-    """The columns that :func:`read_dma` reads, as :func:`_choose_columns` chose them.
-
-    mode : "tension", "shear", or "" where no heading says.
-    pair : the two quantities that give the moduli, or compliances, a key of
-        :data:`.table_reader.PAIRS`.
-    columns : quantity (:attr:`.dma_columns.Column.quantity`) -> its columns, one or more,
-        which must then agree; those of ``mode`` or of no mode, and all of moduli or all of
-        compliances.
-    """
-
-    mode: str
-    pair: tuple[str, str]
-    columns: dict[str, list[Column]]
-
-
-def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
+def _choose_columns(
+    table: Table, found: list[Column], others: dict[str, str]
+) -> tuple[str, tuple[str, str], dict[str, list[Column]]]:
     """Choose the columns from which frequency and moduli are read: one mode, one pair of
     quantities, one kind of frequency.
 
@@ -422,8 +408,11 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     others : heading -> why the column is left out, "" for an unknown quantity.  It is changed:
         columns of another mode or kind than the pair, and measured frequencies beside reduced ones,
         are added.
-    Returns the :class:`_Choice`; its ``columns`` have temperature, and quantities beside the pair,
-    too.
+    Returns (mode: "tension", "shear", or "" where no heading says; pair: the two quantities that
+    give the moduli, or compliances, a key of :data:`.table_reader.PAIRS`; columns: quantity
+    (:attr:`.dma_columns.Column.quantity`) -> its columns, one or more, which must then agree: those
+    of the mode or of no mode, all of moduli or all of compliances, with temperature, and quantities
+    beside the pair, too).
     Raises FileError where no column is a frequency, or no two give the moduli; its message lists
     the headings.
     """
@@ -450,7 +439,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
             for pair in PAIRS:
                 if columns.keys() >= {*pair}:
                     others |= unused
-                    return _Choice(mode, pair, columns)
+                    return mode, pair, columns
     raise missing(table, "dma", problem, others)
 
 

@@ -239,6 +239,7 @@ def thinned(data: _Data) -> _Data:
     return type(data)(np.exp(first), *others)
 
 
+@np.errstate(divide="ignore")  # infinite where the storage modulus does not rise
 def kramers_kronig(curve: Curve) -> KramersKronig:
     """Compare the loss modulus with the local form of the Kramers-Kronig relations, E'' = (pi/2)
     dE'/d ln omega.
@@ -270,13 +271,7 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
         )
         # E'' = pi/2 dE'/d ln(omega), with dE' = E' d ln(E')
         allowed = 0.5 * math.pi * slope * math.exp(log)
-        ratio[n] = (
-            curve.loss[n] / allowed
-            if allowed > 0.0
-            else math.nan
-            if math.isnan(slope)
-            else math.inf
-        )
+        ratio[n] = curve.loss[n] / np.maximum(allowed, 0.0)
     finite = ratio[~np.isnan(ratio)]
     return KramersKronig(curve.omega, ratio, float(np.median(finite)) if finite.size else math.nan)
 
@@ -468,12 +463,10 @@ class DynamicModuli(ModuliRecord):
             self.mode == "shear"
         )
         if lost:
-            text = (
+            warn_of_model(
                 f"{self.source}: three columns do not state {' and '.join(lost)}: give the record "
-                "itself, "
-                f"fit_prony(record)"
+                "itself, fit_prony(record)"
             )
-            warn_of_model(text)
         return super().__iter__()
 
     def __len__(self) -> int:

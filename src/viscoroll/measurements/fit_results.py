@@ -96,7 +96,11 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         )
     target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
     yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
-    yield from _of_relaxation(symbol) if fit.data._fields[0] == "t" else _of_dynamic(fit, symbol)
+    if fit.data._fields[0] == "t":
+        slope = f"{symbol}'' follows from the slope of {symbol}(t)"
+        yield "", f"{slope}; its error is ten times larger or more"
+    else:
+        yield from _of_dynamic(fit, symbol)
     yield "outside", _outside(fit)
     found = fit.admissible
     ends = ", ".join(
@@ -157,18 +161,6 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
         yield "", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"
     for pair in undetermined_shifts(shifts):
         yield "", f"the overlap does not determine the shift {pair}: the curves are flat there"
-
-
-def _of_relaxation(symbol: str) -> Iterator[tuple[str, str]]:
-    """Yield the line of the report on the error of the loss modulus of a fit of relaxation, as
-    (name, text).
-
-    symbol : "E" or "G".
-    """
-    yield (
-        "",
-        f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more",
-    )
 
 
 def _kramers_kronig(median: float, symbol: str) -> str:
@@ -410,8 +402,9 @@ class SeriesFit(Result):
         True
         """
         if self._fault:
-            text = f"{self._fault}: see the points that miss in fit.plot(), and docs/howto/dma.md"
-            warn_of_model(text)
+            warn_of_model(
+                f"{self._fault}: see the points that miss in fit.plot(), and docs/howto/dma.md"
+            )
         E = self.E
         measured = self.measured
         if self.mode == "shear":
@@ -473,8 +466,9 @@ class SeriesFit(Result):
         bodies = cylinder.pair.cylinder, cylinder.pair.half_space
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
-            allowed = "made with material() of this fit"
-            raise described_error("cylinder", "has other materials", allowed)
+            raise described_error(
+                "cylinder", "has other materials", "made with material() of this fit"
+            )
         speed = check_array("V", V, unit="m s-1")
         lam = contact(
             cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam"

@@ -173,11 +173,12 @@ def fit_prony(
         strain = record.mean_strain
         for name, given in (("storage", storage), ("loss", loss)):
             if given is not None:
-                allowed = (
+                raise described_error(
+                    name,
+                    "is given",
                     "left out: the result of read_dma contains it; write modes=5 for a "
-                    "number of modes"
+                    "number of modes",
                 )
-                raise described_error(name, "is given", allowed)
         if mode not in (None, record.mode):
             raise ParameterError(
                 "mode", repr(mode), f"{record.mode!r}, the mode of {record.source or 'the data'}"
@@ -300,11 +301,12 @@ def fit_relaxation(
     """
     if isinstance(t, RelaxationModulus):
         if relaxation is not None or mode not in (None, t.mode):
-            allowed = (
+            raise described_error(
+                "relaxation or mode",
+                "is given",
                 "left out: the result of read_relaxation contains both; write modes=5 for a "
-                "number of modes"
+                "number of modes",
             )
-            raise described_error("relaxation or mode", "is given", allowed)
         mode = _mode(t.mode)
         source = source or t.source
         temperature = t.temperature if temperature is None else temperature
@@ -316,9 +318,10 @@ def fit_relaxation(
     curve = data_of(Relaxation, t, relaxation)
     first, *_, last = curve.relaxation.tolist()  # data_of has sorted them by time
     if last > _RISES * first:
-        found = f"rises with time from {first:g} to {last:g}"
         raise described_error(
-            "relaxation", found, "a relaxation modulus, which falls (a creep compliance rises)"
+            "relaxation",
+            f"rises with time from {first:g} to {last:g}",
+            "a relaxation modulus, which falls (a creep compliance rises)",
         )
     _, fields, errors = _fit_series(curve, modes, misfit)
     temperature = None if temperature is None else check_celsius("temperature", temperature)
@@ -364,8 +367,11 @@ def _fit_series(
     (low, high) = curve.band
     data = thinned(curve)
     if high > MOST_SPREAD * low:
-        span = f"from {data[0][0]:g} to {data[0][-1]:g}"
-        raise ParameterError(data._fields[0], span, f"within a factor of {MOST_SPREAD:g}")
+        raise ParameterError(
+            data._fields[0],
+            f"from {data[0][0]:g} to {data[0][-1]:g}",
+            f"within a factor of {MOST_SPREAD:g}",
+        )
     spectrum, grid, reached = fewest_modes(data, target, modes)
     T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0  # the longest comes first
     prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)

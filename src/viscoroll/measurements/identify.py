@@ -228,8 +228,11 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
     if not found:
         raise described_error("data", "is empty", "at least one record")
     if len({bool(record.measured) for record in found.values()}) != 1:
-        allowed = "one kind: fit the records with values first, then plan with the fitted cylinder"
-        raise described_error("data", "has records with values and records without", allowed)
+        raise described_error(
+            "data",
+            "has records with values and records without",
+            "one kind: fit the records with values first, then plan with the fitted cylinder",
+        )
     return found
 
 
@@ -457,8 +460,12 @@ def _record(path: Path, content: Any, number: int) -> Record:
     kind = _KINDS.get(str(given))
     if kind is None:
         found = "needs kind" if given is None else f"kind = {given!r:.40}"
-        problem = f"{found}: must be one of {', '.join(_KINDS)}{suggestion(str(given), _KINDS)}"
-        raise section_error(path, header, "kind", problem)
+        raise section_error(
+            path,
+            header,
+            "kind",
+            f"{found}: must be one of {', '.join(_KINDS)}{suggestion(str(given), _KINDS)}",
+        )
     columns = (*kind.COORDINATES, *kind.QUANTITIES)
     fields = (
         field for field in dataclasses.fields(kind) if field.init and field.name not in columns
@@ -469,10 +476,7 @@ def _record(path: Path, content: Any, number: int) -> Record:
     for name in ("columns", "units"):
         check_keys(path, f"{header}.{name}", getattr(section, name), columns)
     more: Any = {name: getattr(section, name) for name, *_ in own}
-    more = {
-        name: None if value == _UNKNOWN and name != "name" else value
-        for name, value in more.items()
-    }
+    more |= {name: None for name in more if more[name] == _UNKNOWN and name != "name"}
     try:
         return kind(**more, **_columns(path.parent / section.file, kind, section))
     except ParameterError as error:
@@ -530,8 +534,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         )
         raise FileError(path, f"{problem}: {advice}")
     if others:
-        text = f"{path.name}: unused columns: {', '.join(others)}"
-        warn_of_model(text)
+        warn_of_model(f"{path.name}: unused columns: {', '.join(others)}")
     found = {}
     for name, place in present.items():
         unit = kind.unit(name)

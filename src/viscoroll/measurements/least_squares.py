@@ -226,7 +226,7 @@ class Problem:
             for unknown, x in zip(self.unknowns, u, strict=True)
         }
 
-    def predicted(self, record: Record, u: Floats, record_name: str = "") -> dict[str, Floats]:
+    def predicted(self, record: Record, u: Floats, record_name: str) -> dict[str, Floats]:
         """Return the prediction of a record.
 
         record : :class:`.measurement_records.Record`, the record, of these data or another one.

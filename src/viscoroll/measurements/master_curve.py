@@ -74,17 +74,18 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     another dimension, and for temperatures that are no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
-    columns = tuple(
+    converted = (
         to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True)
     )
     columns = tuple(
-        [*np.asarray(each)] if getattr(each, "ndim", 0) == 2 else each for each in columns
+        [*np.asarray(each)] if getattr(each, "ndim", 0) == 2 else each for each in converted
     )
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
-        sizes, *others = ([np.size(curve) for curve in column] for column in columns)
-        for name, other in zip(Curve._fields[1:], others, strict=True):
+        sizes = [*map(np.size, columns[0])]
+        for name, column in zip(Curve._fields, columns, strict=True):
             # a curve that one of the lists lacks counts as one without points
-            for n, (own, wanted) in enumerate(zip_longest(other, sizes, fillvalue=0), 1):
+            of_curves = zip_longest(map(np.size, column), sizes, fillvalue=0)
+            for n, (own, wanted) in enumerate(of_curves, 1):
                 if own != wanted:
                     raise described_error(
                         name, f"has {own} points in curve {n}", f"as many as omega, {wanted}"
@@ -94,8 +95,11 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
                 "temperature", given.shape, f"one for each of the {len(sizes)} curves"
             )
         if 0 in sizes:
-            found = f"has no points for curve {sizes.index(0) + 1}"
-            raise described_error("omega", found, "one frequency or more for each curve")
+            raise described_error(
+                "omega",
+                f"has no points for curve {sizes.index(0) + 1}",
+                "one frequency or more for each curve",
+            )
         first = np.cumsum([0, *sizes[:-1]])
         return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
     flat = [np.asarray(column) for column in columns]
@@ -396,16 +400,12 @@ def master_curve(
         if ratio > 1.0
     ]
     if factor[-1] > factor[0] and not open_shifts:
-        ends = (
-            f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at "
-            f"{temperatures[-1]:g} C"
-        )
-        allowed = (
-            "shift factors a_T (time divided by time at the reference), which decrease with "
-            f"temperature, in the order of the curves; a_T rises {', '.join(rises)}"
-        )
         raise ParameterError(
-            "shift" if shift is not None else "shift by the overlap", ends, allowed
+            "shift" if shift is not None else "shift by the overlap",
+            f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at "
+            f"{temperatures[-1]:g} C",
+            "shift factors a_T (time divided by time at the reference), which decrease with "
+            f"temperature, in the order of the curves; a_T rises {', '.join(rises)}",
         )
     if rises:
         text = f"a_T rises with temperature {'; '.join(rises)}: check these curves, or give shift="
@@ -462,11 +462,11 @@ def _shifts_by_overlap(
                 name, "do not agree after any shift", "curves that overlap with their neighbours"
             )
         if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
-            problem = (
-                f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve"
+            raise described_error(
+                name,
+                f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve",
+                "curves that overlap more: measure between these temperatures, or give shift=",
             )
-            allowed = "curves that overlap more: measure between these temperatures, or give shift="
-            raise described_error(name, problem, allowed)
     torn = [
         f"from {cold:g} to {warm:g} C"
         for alignment, (cold, warm) in zip(found, pairwise(temperatures), strict=True)

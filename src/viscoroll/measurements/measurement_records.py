@@ -195,10 +195,11 @@ class Record:
         given = {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
             if len(self.measured) > 1:
-                allowed = (
-                    f"one for each quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
+                raise ParameterError(
+                    self.label("sigma"),
+                    f"{given!r:.40}",
+                    f"one for each quantity, as {{{': ..., '.join(map(repr, among))}: ...}}",
                 )
-                raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
         check_names(self.label("sigma"), given, among, "a quantity of it")
         return {name: value for name, value in given.items() if value is not None}
@@ -311,9 +312,10 @@ class Resistance(Record):
         for name in self.measured:
             noise = 0.0 if self.sigma[name] is None else 3.0 * self.sigma[name]
             if (getattr(self, name) * np.sign(self.V) < -noise).all():
-                allowed = "of the sign of V, as it resists: reverse its sign"
                 raise described_error(
-                    self.label(name), "has at all points the sign opposite to V", allowed
+                    self.label(name),
+                    "has at all points the sign opposite to V",
+                    "of the sign of V, as it resists: reverse its sign",
                 )
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
@@ -496,8 +498,11 @@ class Coastdown(Record):
             raise shape_error(self.label("t"), t.shape, "a vector, in ascending order")
         if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
             n = falls[0]
-            at = f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}"
-            raise ParameterError(self.label("t"), at, "a vector, in ascending order")
+            raise ParameterError(
+                self.label("t"),
+                f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}",
+                "a vector, in ascending order",
+            )
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
             raise ParameterError(self.label("t0"), self.t0, "a number, or (low, high)")

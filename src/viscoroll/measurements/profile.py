@@ -436,7 +436,7 @@ class ProfileWalk:
         )
         return self.visited[-1]
 
-    def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
+    def is_below(self, minimum: Minimum, part: float) -> bool:
         """Return whether the rise of chi2 from the best minimum to another point is below part *
         ``delta_chi2``.
 

@@ -415,8 +415,11 @@ def fewest_modes(
     if not starts:
         x, name, *_ = data._fields
         side, n = ("long times", -1) if x == "t" else ("low frequencies", 0)
-        found = f"has no plateau at {side} ({data[1][n]:g} at {x} = {data[0][n]:g})"
-        raise described_error(name, found, "that of a solid, whose long-time modulus is positive")
+        raise described_error(
+            name,
+            f"has no plateau at {side} ({data[1][n]:g} at {x} = {data[0][n]:g})",
+            "that of a solid, whose long-time modulus is positive",
+        )
     limit = _NEAR_BEST * min(_size(data, spectrum) for spectrum, _ in starts)
     reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)
 

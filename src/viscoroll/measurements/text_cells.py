@@ -109,8 +109,7 @@ def fault_of(cell: str, decimal: str) -> str:
     if _THOUSANDS.fullmatch(cell) or (not decimal and _NUMBER.fullmatch(cell)):
         return (
             "may contain a separator of thousands, since both marks occur or all groups have three "
-            "digits: "
-            "write only decimal marks"
+            "digits: write only decimal marks"
         )
     return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else ': remove its row'}"
 
@@ -191,8 +190,8 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
         raw = Path(path).read_bytes()
     if raw.startswith(_WORKBOOKS):
         raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
-    shown = next((name for first, name in _ENCODINGS.items() if re.match(first, raw)), None)
-    given = encoding or shown
+    shown = (name for first, name in _ENCODINGS.items() if re.match(first, raw))
+    given = encoding or next(shown, None)
     # cp932 after UTF-8, before encodings that almost any bytes fit
     usual = _JAPANESE + _USUAL[1:] if _KANJI.search(raw) else _USUAL
     for name in (given,) if given else usual:
@@ -207,11 +206,9 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
             continue
         if "\0" in text:
             raise FileError(path, "is not a text file: it has null bytes")
-        first, *others = re.split(r"\r\n|\r|\n", text)
-        return [
-            "" if re.fullmatch(r"(?i)sep=.\s*", first) else first,
-            *others,
-        ]  # Excel's own line on the separator
+        # without Excel's own line on the separator
+        text = re.sub(r"(?i)\Asep=[^\r\n][^\S\r\n]*(?=[\r\n]|\Z)", "", text)
+        return re.split(r"\r\n|\r|\n", text)
     raise FileError(path, problem)
 
 

@@ -277,15 +277,13 @@ class _Layout:
             for line in lines[: heads[0]]:
                 if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
                     # with empty cells between them numbers are headings of groups of columns
-                    if all(line.cells):
-                        raise self.fault(
-                            line, "has numbers above the headings: keep one table of the file"
-                        )
-                    raise self.fault(
-                        line,
-                        "is a second row of headings: keep it and the columns of one of its "
-                        "numbers",
+                    problem = (
+                        "has numbers above the headings: keep one table of the file"
+                        if all(line.cells)
+                        else "is a second row of headings: keep it and the columns of one of its "
+                        "numbers"
                     )
+                    raise self.fault(line, problem)
             return heads
         first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
         above = [
@@ -313,15 +311,7 @@ class _Layout:
                     line, f"contains column names, but does not have {width} columns, {self.cut}"
                 )
         names = [f"column {n}" for n in range(width)]
-        lines[:first] = [
-            Line(
-                number=lines[first].number,
-                text=str(names),
-                cells=names,
-                comment=False,
-                numeric=False,
-            )
-        ]
+        lines[:first] = [lines[first]._replace(text=str(names), cells=names, numeric=False)]
         return [0]
 
     def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
@@ -356,11 +346,11 @@ class _Layout:
                 )
                 raise self.fault(row, f"is not a row of numbers: {advice}")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
-                problem = (
+                raise self.fault(
+                    row,
                     f"has {len(row.cells)} columns, but line {line.number} has "
-                    f"{len(names)}, {self.cut}"
+                    f"{len(names)}, {self.cut}",
                 )
-                raise self.fault(row, problem)
         return names, self.units(body[:first], len(names)), rows
 
     def headings(self, line: Line) -> list[str]:
@@ -558,6 +548,5 @@ def conversion_of_column(
     Raises ParameterError for a unit that is unknown or of another dimension.
     """
     if unit in NO_UNIT and wanted not in ("", "1"):
-        text = f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}"
-        warn_of_model(text)
+        warn_of_model(f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}")
     return (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)

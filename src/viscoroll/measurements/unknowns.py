@@ -230,8 +230,11 @@ def cylinder_of(
         changed = _replace_values(body, _PREFIX[section], values)
         if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
             if section not in shifts:
-                allowed = f"given with a shift of the {section}, as vr.WLF(T0=20.0)"
-                raise ParameterError(record.label("temperature"), record.temperature, allowed)
+                raise ParameterError(
+                    record.label("temperature"),
+                    record.temperature,
+                    f"given with a shift of the {section}, as vr.WLF(T0=20.0)",
+                )
             changed = changed.at(record.temperature, shifts[section])
         if changed is not body:
             changes[section] = changed

@@ -351,7 +351,7 @@ class Estimate:
     seconds: float
     memory: float
     stored: float
-    law_seconds: float = 0.0
+    law_seconds: float
 
     def __str__(self) -> str:
         """Return the estimate in words, five lines.
@@ -424,7 +424,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     block_content(short, 0)
     law_seconds = _time_of_laws(short)
     start = time.perf_counter()
-    files, summary, _ = block_content(short, 0)
+    files, summary = block_content(short, 0)
     record = len(encoded(Record("", {}, summary=summary)))
     seconds = time.perf_counter() - start
     stored = sum(map(len, files.values())) * (run.settings.n / trial) + record * run.blocks

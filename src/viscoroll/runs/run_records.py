@@ -215,12 +215,11 @@ def motion_files(
         # for a block the arrays over motions, for the metadata the values of all others
         if of_motions == (number is not None):
             array[start : start + len(variable)] = variable.values
-    content = _as_bytes(files)
-    return (
-        content
-        if number is None
-        else {key: chunk for key, chunk in content.items() if not _is_metadata(key)}
-    )
+    return {
+        key: chunk
+        for key, chunk in _as_bytes(files).items()
+        if number is None or not _is_metadata(key)
+    }
 
 
 def dataset_files(dataset: Dataset) -> dict[str, bytes]:

@@ -111,10 +111,10 @@ def verify(path: str | PathLike[str]) -> Verdict:
     motions, size, blocks = (
         int(start.about[name]) for name in ("motions", "motions_a_block", "blocks")
     )
-    parts: dict[str | int, int] = {"start": motions}
-    parts |= {block: min(size, motions - block * size) for block in range(blocks)} | {
-        "end": motions
+    of_blocks: dict[str | int, int] = {
+        block: min(size, motions - block * size) for block in range(blocks)
     }
+    parts = {"start": motions, **of_blocks, "end": motions}
     faults = {part: problems(root, part, start.run, count) for part, count in parts.items()}
     missing = tuple(block for block in range(blocks) if faults[block])
     # a block or an end without files was not evaluated yet: it is missing, not damaged
@@ -341,8 +341,13 @@ class RunResults(Result):
         for name in self.names:
             mean, std = (data[f"{name}_{moment}"] for moment in ("mean", "std"))
             at = "at the end: " if mean.ndim else ""
-            last = f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}"
-            rows.append(SummaryRow(name, last, unit_of(mean.attrs)))
+            rows.append(
+                SummaryRow(
+                    name,
+                    f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}",
+                    unit_of(mean.attrs),
+                )
+            )
         ended = zip(data["status"].values, data["ended"].values, strict=True)
         rows += [
             SummaryRow("ended", f"{count}: {MotionStatus(code).message}")

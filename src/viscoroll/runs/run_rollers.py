@@ -195,8 +195,11 @@ def _warm_bodies(
         raise ParameterError("speed", None, "given in [heat] where [start] has no V0")
     for name, body in bodies.items():
         if isinstance(body, Solid):
-            allowed = "certain beside [heat]: its temperature follows from the law of one material"
-            raise described_error(name, "has uncertain numbers", allowed)
+            raise described_error(
+                name,
+                "has uncertain numbers",
+                "certain beside [heat]: its temperature follows from the law of one material",
+            )
     given = {name: heat[name] for name in ("ambient", "conductance")}
     found = Cylinder(**numbers, **bodies).temperature(speed, **given).temperature
     if not found.size or np.isnan(found[..., 0]).any():

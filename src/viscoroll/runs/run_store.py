@@ -18,7 +18,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -436,9 +436,9 @@ class Store:
         Raises what :func:`block_content` raises, and FileError if writing fails; nothing of the
         block counts as stored then.
         """
-        files, summary, count = block_content(self.run, block)
+        files, summary = block_content(self.run, block)
         self._write_part(block, files, summary=summary)
-        return count
+        return self._motions(block)
 
     def finish(self) -> None:
         """Merge the summaries of all blocks and write them with the consolidated metadata; the
@@ -479,40 +479,24 @@ class Store:
             yield record.summary
 
 
-class BlockContent(NamedTuple):
-    """Result of a block, as a store holds it.
-
-    files : path below the store -> content of the chunks of its motions; empty if summaries alone
-    are kept.
-    summary : summary of its motions.
-    motions : number of its motions.
-    """
-
-    files: dict[str, bytes]
-    summary: Summary
-    motions: int
-
-
-def block_content(run: Run, block: int) -> BlockContent:
+def block_content(run: Run, block: int) -> tuple[dict[str, bytes], Summary]:
     """Roll the motions of a block, and make the files and the summary that the store keeps of it;
     nothing is written.
 
     run: :class:`runs.Run`, with inputs and settings; files of motions are made if ``settings.keep``
     is "all".
     block: number of the block, from 0 to ``run.blocks - 1``.
-    Returns the :class:`BlockContent`, whose ``files`` are {} if ``settings.keep`` is "summaries".
+    Returns (files: path below the store -> content of the chunks of its motions, {} if
+    ``settings.keep`` is "summaries"; summary of its motions).
     Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a
     material does not allow, CancelledError if the run was interrupted
     (:func:`.arrays.cancel_with`), MissingDependencyError if motions are kept and zarr is not
     installed.
     """
     values, motions = roll_block(run, block)
-    files = (
-        _motion_files(run, columns_of(run, values, motions), block)
-        if run.settings.keep == "all"
-        else {}
-    )
-    return BlockContent(files, summarise(motions, run.settings.summaries), len(motions))
+    keeps = run.settings.keep == "all"
+    files = _motion_files(run, columns_of(run, values, motions), block) if keeps else {}
+    return files, summarise(motions, run.settings.summaries)
 
 
 def metadata(run: Run) -> dict[str, bytes]:

@@ -328,11 +328,13 @@ def read_run(path: str | PathLike[str]) -> Run:
             path, "run", "summaries", "summaries = []: must name at least one quantity"
         )
     if settings.method == "flow" and not run.mappable:
-        problem = (
+        raise section_error(
+            path,
+            "run",
+            "method",
             "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, "
-            "and where scenes differ"
+            "and where scenes differ",
         )
-        raise section_error(path, "run", "method", problem)
     _check_inputs(run)
     return run
 

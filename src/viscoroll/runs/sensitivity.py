@@ -136,10 +136,7 @@ def sobol_indices(
     for name, values in outcomes.items():
         over = ("t",) * QUANTITIES[name].over_time
         # differences below it are those of the integrator, not of the inputs
-        noise = (
-            settings.rtol
-            * np.abs(values, where=np.isfinite(values), out=np.zeros_like(values)).max()
-        )
+        noise = settings.rtol * np.abs(values).max(where=np.isfinite(values), initial=0.0)
         # a row for each t: motions in the order of _points, base points of A, of B, of each mixture
         indices, reasons = zip(
             *(_indices(row.reshape(-1, base), noise, settings.seed) for row in values), strict=True

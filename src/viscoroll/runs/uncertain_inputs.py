@@ -379,9 +379,8 @@ class _Reader:
                     raise section_error(
                         self.path, section, key, f"{key}: unknown key {name!r}{near}"
                     )
-            within = f"{section}.{key}"
             return {
-                name: self.part(member, within, name, (*words, name))
+                name: self.part(member, f"{section}.{key}", name, (*words, name))
                 for name, member in value.items()
             }
         # the section of a number within a table is "drive.torque": its first word has the prefix

@@ -239,18 +239,15 @@ _CYLINDER_NUMBERS = ("R", "m", "mu", "load")
 #: Attribute ``comment`` of a grid.
 COMMENT = (
     "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, "
-    "delta_star, delta_0 and beta "
-    "are even in V; M, its two parts and Q(V, delta) are odd. Let d = delta - delta_0(V), where "
-    "delta_0 is 0 in a "
-    "grid without this field, where beta is even in d, Q odd. beta has a kink at |d| = "
-    "delta_star(V), in a grid with delta_0 at other d of either sign, beyond which the whole "
-    "contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. "
-    "A grid is for plots and for look-up blocks of other programs. Do not use it where the onset "
-    "of full slip decides a result: look-up smooths the kink, and spline_error and "
-    "linear_error of Q and "
-    "beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact at "
-    "every V, delta, "
-    "kappa and mu, and has a tenth of the size; law.nc of make tables holds every alpha."
+    "delta_star, delta_0 and beta are even in V; M, its two parts and Q(V, delta) are odd. Let d = "
+    "delta - delta_0(V), where delta_0 is 0 in a grid without this field, where beta is even in d, "
+    "Q odd. beta has a kink at |d| = delta_star(V), in a grid with delta_0 at other d of either "
+    "sign, beyond which the whole contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. A "
+    "grid is for plots and for look-up blocks of other programs. Do not use it where the onset of "
+    "full slip decides a result: look-up smooths the kink, and spline_error and linear_error of Q "
+    "and beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact "
+    "at every V, delta, kappa and mu, and has a tenth of the size; law.nc of make tables holds "
+    "every alpha."
 )
 
 
@@ -480,8 +477,8 @@ def _evaluate_nodes(
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
     scene = roller.scene() if isinstance(roller, Cylinder) else roller
     of_traction = () if scene.cover is None else OF_TRACTION
-    names = tuple(name for name in PLANE if name not in of_traction)
-    names = names if scene.cover is not None else tuple(name for name in names if name != "delta_0")
+    # delta_0 is 0 without a cover
+    names = tuple(name for name in PLANE if name not in (of_traction or ("delta_0",)))
     fields = _evaluate(roller, plane, names, method)
     volume = _evaluate(roller, grid, (*VOLUME, *of_traction), method)
     # the fields over the plane were computed at the one creepage 0, whose axis is the second

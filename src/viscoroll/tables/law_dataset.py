@@ -427,9 +427,13 @@ def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
     count = min(count, COUPLED_POINTS) if kind == COUPLED else count
     ratio = _COUPLED_RATIO if kind == COUPLED else SAMPLE_RATIO
     errors = measured_errors(read(content, source), count, seed)
-    meaning = f"{'absolute' if kind == COUPLED else 'relative'}; {count} {_REFERENCES[kind]}"
     return [
-        Check(f"{table.attrs['title']}: {name}", errors[name], ratio * stated + ROUNDING, meaning)
+        Check(
+            f"{table.attrs['title']}: {name}",
+            errors[name],
+            ratio * stated + ROUNDING,
+            f"{'absolute' if kind == COUPLED else 'relative'}; {count} {_REFERENCES[kind]}",
+        )
         for name, stated in stated_errors(table).items()
     ]
 
@@ -475,8 +479,12 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
         # a field of zeros, as M of elastic bodies, has no such bound
         most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
         allowed = min(SAMPLE_RATIO * float(table[name].attrs["spline_error"]) + ROUNDING, most)
-        meaning = f"absolute; {count} points, against rows"
         checks.append(
-            Check(f"grid: {name}, splines", float(np.max(splines[name])), allowed, meaning)
+            Check(
+                f"grid: {name}, splines",
+                float(np.max(splines[name])),
+                allowed,
+                f"absolute; {count} points, against rows",
+            )
         )
     return checks

@@ -121,12 +121,11 @@ def _write_modelica(table: Dataset, path: Path) -> None:
     """
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if table_files.axes_of(plane) != ("V", "delta"):
-        allowed = (
-            "a grid on V and delta, the two inputs of a Modelica table: select one alpha by "
-            "table.sel(alpha=...)"
-        )
         raise described_error(
-            "table", f"has the axes {', '.join(table_files.axes_of(table))}", allowed
+            "table",
+            f"has the axes {', '.join(table_files.axes_of(table))}",
+            "a grid on V and delta, the two inputs of a Modelica table: select one alpha by "
+            "table.sel(alpha=...)",
         )
     V = table["V"].values
     delta = table["delta"].values
@@ -210,10 +209,9 @@ def _write_matlab(table: Dataset, path: Path) -> None:
         "linear_error": {name: table[name].attrs.get(_ERROR, np.nan) for name in names},
         "linear_error_at": {name: table[name].attrs.get("linear_error_at", "") for name in names},
         "about": f"viscoroll {__version__}. {table.attrs['title']}. {PAPER}. Breakpoints and "
-        "tables for n-D lookup; "
-        "dimensions names the breakpoints of each table. linear_error: absolute error of linear "
-        "interpolation in all "
-        f"breakpoints; linear_error_at: the point where it is largest. {table.attrs['comment']}",
+        "tables for n-D lookup; dimensions names the breakpoints of each table. linear_error: "
+        "absolute error of linear interpolation in all breakpoints; linear_error_at: the point "
+        f"where it is largest. {table.attrs['comment']}",
         "given": {
             name: table.attrs[name] for name in (*_PARAMETERS, "material") if name in table.attrs
         },

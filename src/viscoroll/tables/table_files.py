@@ -239,11 +239,11 @@ def load(path: str | PathLike[str]) -> Dataset:
             io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False
         )
     except Exception as error:  # libraries raise errors of many kinds
-        problem = (
+        raise FileError(
+            path,
             "is damaged or is not a table of viscoroll "
-            f"({' '.join(str(error).split()):.120}): build it again"
-        )
-        raise FileError(path, problem) from error
+            f"({' '.join(str(error).split()):.120}): build it again",
+        ) from error
     check_content(table, path)
     table.encoding["source"] = str(path)  # for messages, as where xarray reads a file
     return table
@@ -455,8 +455,11 @@ class Interpolant:
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):
             wanted = ", ".join(axis for axis in self._axes if axis in needed)
-            allowed = f"axes of this grid ({', '.join(self._axes)}); these fields need {wanted}"
-            raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
+            raise ParameterError(
+                "coordinates",
+                ", ".join(points) or "none",
+                f"axes of this grid ({', '.join(self._axes)}); these fields need {wanted}",
+            )
         axes = {name: self._table[name] for name in points}
         arrays = {
             name: check_array(name, value, unit=axes[name].attrs.get("units", "1"))
