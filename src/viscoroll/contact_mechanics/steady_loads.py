@@ -412,8 +412,7 @@ def balance(
     from ..kernels.law.spline_law import balance_loop
 
     kappa, mu = (
-        np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=float)
-        for each in contacts[1:]
+        np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=float) for each in contacts[1:]
     )
     table = contacts.law.record.table
     out = np.empty((V.size, 2))

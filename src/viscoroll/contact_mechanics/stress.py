@@ -369,9 +369,7 @@ def _stress_of_law(
     )
     # first the fields of Points in their order; an array of materials has their indices for alpha
     state = (scene.kappa, scene.mu, lam, epsilon, beta, zeta, alpha)
-    arrays = [
-        np.asarray(value, float) for value in (x, *state, mirror, np.sign(delta) * mirror)
-    ]
+    arrays = [np.asarray(value, float) for value in (x, *state, mirror, np.sign(delta) * mirror)]
     shape = broadcast_shape(x=x, V=arrays[3])  # lam has the shape of the states
     read_x, *readers, read_alpha, read_mirror, read_sign = (
         block_reader(array, shape) for array in arrays

@@ -244,9 +244,7 @@ def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
     numbers: other variables of the file, of which u, t, edges and mu are read.
     Raises ValueError for shapes that do not go together, KeyError for a variable that is missing.
     """
-    u, t, edges = (
-        lock_array(np.array(numbers[name], dtype=float)) for name in ("u", "t", "edges")
-    )
+    u, t, edges = (lock_array(np.array(numbers[name], dtype=float)) for name in ("u", "t", "edges"))
     if fields.shape != (u.size + 2, t.size, len(FIELDS)) or edges.shape != (u.size + 2, 4):
         raise ValueError(f"its functions have shape {fields.shape[:-1]}")
     return CoupledRows(mu=float(numbers["mu"]), u=u, t=t, edges=edges, fields=fields)
@@ -281,9 +279,7 @@ def _coefficients(content: Content) -> Floats:
     Raises KeyError for a function that is missing, ValueError for functions of different shapes.
     """
     names = KINDS[content.attributes[KIND]].functions
-    return lock_array(
-        np.stack([content.numbers[name] for name in names], axis=-1).astype(float)
-    )
+    return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(float))
 
 
 @contextmanager
