@@ -145,8 +145,8 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     part of the second antiderivative of a wave, without terms linear in x.  Each bin is a matrix
     of its own, so that BLAS takes no threads beside those of the rows.
     """
-    nodes = layer_nodes(nu)
-    k = nodes.u / thickness
+    u, L, shear, C = layer_nodes(nu)
+    k = u / thickness
     size, _ = _fit()
     phase = size[:, None] * k
     small = phase < _SMALL_PHASE
@@ -155,7 +155,7 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     even = np.where(small, 0.5 - phase**2 / 24.0, 2.0 * (np.sin(0.5 * safe) / safe) ** 2)
     odd = np.where(small, phase / 6.0 - phase**3 / 120.0, (safe - np.sin(safe)) / safe**2)
     # the nodes have (L - 1)/u and (T - L)/u; here L - 1, T - 1 and C, and dk = du/thickness
-    excess = np.array([nodes.L, nodes.L + nodes.shear, nodes.C]) * nodes.u
+    excess = np.array([L, L + shear, C]) * u
     phases = np.array([even, odd]).reshape(2, BINS, DEGREE + 1, k.size)
     return k, phases, excess / (np.pi * thickness)
 

@@ -209,11 +209,8 @@ def branches(law: LawTable, gain: float) -> Branches:
     u = np.exp2(nodes)
     for at in flat:
         u = u[np.abs(u - at) > _SEPARATION * at]
-    whole = np.concatenate([u, flat])
-    order = np.argsort(whole)
-    # extrema were put behind the nodes
-    is_flat = order >= u.size
-    u = whole[order]
+    u = np.union1d(u, flat)
+    is_flat = np.isin(u, flat)
     ends = [0, *np.flatnonzero(is_flat).tolist(), u.size - 1]
     return Branches(
         u=u,

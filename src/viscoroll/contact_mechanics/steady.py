@@ -49,7 +49,6 @@ from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
 from .steady_loads import (
-    Gains,
     Loads,
     find_speeds,
     is_balanced_at_rest,
@@ -142,9 +141,8 @@ class _ScanProblem(NamedTuple):
         of_force, of_torque = self.load_rows[:, 2]
         law = self.contacts.law
         if law.coupled is not None:
-            gains = Gains(force_omega=of_force, torque_omega=of_torque)
             Q, half_space, cylinder = loads_without_omega(
-                self.contacts, free.V, force, torque, gains
+                self.contacts, free.V, force, torque, of_force, of_torque
             )
         elif law.cover is not None:
             shear = shear_at(self.contacts, free.V)

@@ -421,7 +421,12 @@ def balance(
 
 
 def loads_without_omega(
-    contacts: Contacts, V: Floats, on_axis: Floats, on_spin: Floats, gains: Gains
+    contacts: Contacts,
+    V: Floats,
+    on_axis: Floats,
+    on_spin: Floats,
+    of_force: float,
+    of_torque: float,
 ) -> tuple[Floats, Floats, Floats]:
     """Return the traction and the moments on a table at which the balances of axis and cylinder
     hold after omega, on which force and torque depend, is eliminated.
@@ -434,16 +439,16 @@ def loads_without_omega(
     V : speeds > 0, dimensionless, (n,).
     on_axis, on_spin : force and torque, divided by P and by P R, at omega = 0 or any other speed,
         (n,) each.
-    gains : :class:`Gains`, of which those on omega are read.
+    of_force, of_torque : gains of force and torque on omega.
     Returns (Q, M_half_space, M_cylinder), (n,) each; where friction does not suffice, the moments
     are those of the onset of full slip, and Q is what the equation then requires.
     Raises ParameterError where the gains nearly cancel, so that several creepages may balance.
     """
-    total = gains.torque_omega + gains.force_omega
-    if abs(total) <= _CANCELLED * (abs(gains.torque_omega) + abs(gains.force_omega)):
-        raise _cancelling_error(gains.force_omega, gains.torque_omega)
-    axis = gains.torque_omega / total
-    spin = gains.force_omega / total
+    total = of_torque + of_force
+    if abs(total) <= _CANCELLED * (abs(of_torque) + abs(of_force)):
+        raise _cancelling_error(of_force, of_torque)
+    axis = of_torque / total
+    spin = of_force / total
     wanted = spin * on_spin - axis * on_axis
     low, high = contacts.fields(V, 0.0, "delta_minus", "delta_plus")
     for _ in range(_HALVINGS):

@@ -34,14 +34,10 @@ from .steady_loads import (
     creep_beyond_free,
     moments_of_losses,
     shear_at,
-    torque_left,
 )
 
 #: loads of one block of work: some milliseconds
 _BLOCK = 1 << 12
-#: speed at which slopes at rest are taken, divided by the first node of a table: there the law is
-#: linear in u
-_SLOW = 1e-3
 #: |Q|/mu below which delta is computed from its slope at Q = 0
 _SMALL_TRACTION = 1e-8
 #: |Q|/mu below which a Newton step corrects delta, which is a difference there
@@ -166,89 +162,54 @@ class States(NamedTuple):
             or where V and the force were given the force.
         load : index of the load of each state, (n,).
         law : table of the material.
-        Returns the :class:`States`, (n,), with V = omega = M = 0: the eigenvalue of slip is -inf,
-        the slow one is that of the less stable direction, 0 for elastic bodies without gains; delta
-        and omega are NaN where the friction does not suffice, |Q| >= mu.
+        Returns the :class:`States`, (n,), with V = omega = 0: the eigenvalue of slip is -inf, the
+        slow one is that of the less stable direction (on a table of the coupled solution of motion
+        with V > 0), 0 for elastic bodies without gains; delta and omega are NaN where the friction
+        does not suffice, |Q| >= mu.
         """
+        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
+        still = np.zeros(load.size)
+        contacts = Contacts(law, kappa, mu)
+        on_spin = loads.given != "force"
+        required = loads.torque[load] if on_spin else -loads.force[load]
         if law.coupled is not None:
-            return cls._at_rest_on_table(loads, load, law)
-        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
-        still = np.zeros(load.size)
-        contacts = Contacts(law, kappa, mu)
-        star, free = contacts.fields(still, 0.0, "delta_star", "delta_0")
-        shear = shear_at(contacts, still)
-        Q = shear.traction(loads.torque[load], of_spin=1.0)
-        if loads.given == "force":
-            Q = shear.traction(-loads.force[load], of_axis=1.0)
-        part = np.abs(Q) / mu
-        rows = np.zeros((_COUNT, load.size))
-        rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
-        # delta_star (1 - sqrt(1 - |Q|/mu)) without cancellation, the creepage of Carter's contact
-        star = star * part / (1.0 + beta)
-        forth, back = (
-            free + creep_beyond_free(contacts, still, sign * star)
-            for sign in (np.sign(Q), -np.sign(Q))
-        )
-        # 0, or NaN where the friction does not suffice
-        rows[Field.OMEGA] = 0.0 * beta
-        rows[Field.DELTA] = forth
-        rows[Field.Q] = Q
-        rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = shear.moments(Q)
-        rows[Field.FAST] = rows[Field.SLOW] = -np.inf
-        names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        half_space, cylinder, over_V = contacts.fields(still, np.nan_to_num(forth), *names)
-        # slopes of the balances over Q, then of the moments over V at fixed Q
-        by_base, by_cylinder = shear.factors + 2.0 * shear.excesses * part
-        on_axis = 1.0 + by_base
-        on_spin = 1.0 - by_cylinder
-        half_space = half_space + by_base * over_V
-        cylinder = cylinder + by_cylinder * over_V
-        gains = loads.gains
-        for creep in (forth, back):  # of motion to either side
-            push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
-            turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
-            rate = on_spin * push + on_axis * turn
-            rows[Field.SLOW] = np.maximum(
-                rows[Field.SLOW], -rate / (on_spin + j * on_axis * (1.0 + creep))
-            )
-        return cls(load, rows)
-
-    @classmethod
-    def _at_rest_on_table(cls, loads: Loads, load: Integers, law: LawTable) -> States:
-        """Return the states of rest on a table of the coupled solution.
-
-        loads: the loads, dimensionless.
-        load: index in ``loads`` of the load of each state, int, (n,).
-        law: table with ``coupled`` rows.
-        Returns the :class:`States`, (n,); omega is NaN where the friction does not suffice.
-        """
-        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
-        still = np.zeros(load.size)
-        contacts = Contacts(law, kappa, mu)
-        spin = loads.given != "force"
-        required = loads.torque[load] if spin else -loads.force[load]
-        delta, unbalanced = balance(contacts, still, required, spin)
-        rows = np.zeros((_COUNT, load.size))
-        rows[Field.Q : Field.BETA + 1] = contacts.fields(still, delta, *_ROWS[:4])
-        Q, half_space, cylinder = rows[Field.Q : Field.BETA]
-        gains = loads.gains
-        # the loads in balance at this creepage, and their derivatives with respect to V
-        force = half_space - Q
-        torque = Q + cylinder
-        dforce_dV = gains.force_V + gains.force_omega * (1.0 + delta)
-        dtorque_dV = gains.torque_V + gains.torque_omega * (1.0 + delta)
-        V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
-        left_at_V = torque_left(contacts, V, force + dforce_dV * V, torque + dtorque_dV * V)
-        # derivative of the torque left with respect to the force, a difference quotient
-        step = 1e-6 * mu
-        left_of_less_force = torque_left(contacts, still, force - step, torque)
-        left_at_rest = torque_left(contacts, still, force, torque)
-        dleft_dforce = (left_of_less_force - left_at_rest) / -step
-        rows[Field.DELTA] = np.where(unbalanced == 0.0, delta, np.nan)
-        rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
+            creep, rest = balance(contacts, still, required, on_spin)
+            creeps = [creep]
+            rows = state_rows(contacts, still, creep)
+            exists = rest == 0.0
+        else:
+            star, free = contacts.fields(still, 0.0, "delta_star", "delta_0")
+            shear = shear_at(contacts, still)
+            Q = shear.traction(required, of_axis=1.0 - on_spin, of_spin=float(on_spin))
+            part = np.minimum(np.abs(Q) / mu, 1.0)
+            # delta_star (1 - sqrt(1 - |Q|/mu)) without cancellation, the creepage of Carter's
+            # contact, of motion to either side
+            star = star * part / (1.0 + np.sqrt(1.0 - part))
+            creeps = [
+                free + creep_beyond_free(contacts, still, sign * star)
+                for sign in (np.sign(Q), -np.sign(Q))
+            ]
+            rows = state_rows(contacts, still, creeps[0])
+            rows[Field.Q] = Q
+            exists = part < 1.0
+        slow = np.full(load.size, -np.inf)
+        with np.errstate(divide="ignore", invalid="ignore"):  # in full slip
+            # slopes of the balances over Q, then of the moments over V at fixed Q
+            slopes = rows[list(_OVER_CREEP)] / rows[Field.DQ_DDELTA]
+            of_axis = 1.0 - slopes[1]
+            of_spin = 1.0 + slopes[2]
+            over_V = rows[list(_OVER_V)]
+            half_space, cylinder = over_V[1:] - slopes[1:] * over_V[0]
+            gains = loads.gains
+            for creep in creeps:
+                push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
+                turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
+                rate = of_spin * push + of_axis * turn
+                slow = np.maximum(slow, -rate / (of_spin + j * of_axis * (1.0 + creep)))
+        rows[Field.OMEGA :] = 0.0
         rows[Field.FAST] = -np.inf
-        # the rate at which a small V grows when the creepage of rest is kept
-        rows[Field.SLOW] = left_at_V / V / (j * (1.0 + delta) + np.maximum(dleft_dforce, 0.0))
+        rows[Field.SLOW] = slow
+        rows[[[Field.DELTA], [Field.OMEGA]], ~exists] = np.nan
         return cls(load, rows)
 
     @classmethod

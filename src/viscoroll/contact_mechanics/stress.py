@@ -62,7 +62,7 @@ class _States:
     kappa, mu, V : as in the scene, with V of any sign; sign : that of V, 1.0 of 0.
     slip, delta : omega - V, and the creepage; infinite for omega other than 0 at V = 0.
     u, creep : kappa |V|, and 2 kappa delta.
-    row : number of the row of each state, from 0.
+    groups : indices of the states of each row, a list of arrays.
     """
 
     def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
@@ -99,12 +99,9 @@ class _States:
         with np.errstate(over="ignore"):
             self.creep = 2.0 * self.kappa * self.delta
         # states of one speed and friction share the onsets of full slip, which are solved once
-        _, self.row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
-
-    def groups(self) -> list[Any]:
-        """Return the indices of the states of each row, a list of arrays."""
-        row = self.row.ravel()
-        return [np.flatnonzero(row == n) for n in range(int(row.max(initial=-1)) + 1)]
+        _, row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
+        row = row.ravel()
+        self.groups = [np.flatnonzero(row == n) for n in range(int(row.max(initial=-1)) + 1)]
 
 
 def evaluate_coupled(
@@ -123,7 +120,7 @@ def evaluate_coupled(
         allowed = "left out: in plane strain the approach of a half-space is infinite"
         raise ParameterError("fields", repr(DEPTH), allowed)
     states = _States(scene, V, creep, creep_is_omega)
-    groups = states.groups()
+    groups = states.groups
     computed = tuple(dict.fromkeys(names))
     out = np.empty((len(computed), states.V.size))
 

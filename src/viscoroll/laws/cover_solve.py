@@ -79,24 +79,6 @@ LARGE_ALPHA = 1e8
 _LARGE_BETA = 1e12
 
 
-class LayerNodes(NamedTuple):
-    """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on
-    Poisson's ratio alone.
-
-    All are dimensionless, (n,) each; "the weights" are those of the integral over u.
-
-    u : nodes, wave number times thickness, > 0, ascending.
-    L : (L - 1)/u times the weights.
-    shear : (T - L)/u times the weights.
-    C : C less its limit for short waves, over u, times the weights.
-    """
-
-    u: Floats
-    L: Floats
-    shear: Floats
-    C: Floats
-
-
 class CoverState(NamedTuple):
     """The contact at one half length z, dimensionless; slopes and creep in units of V T_ref/R.
 
@@ -178,7 +160,7 @@ class CoverModes:
     wave : nodes of the integrals over the wave number, as wave numbers times l0, of all layers one
     after another, (n,).
     mine : 1 where a node belongs to a layer of that body, else 0, (2, n).
-    L, shear, C : kernels of :class:`LayerNodes` at the nodes; C has the sign of its body, positive
+    L, shear, C : kernels of :func:`layer_nodes`; C has the sign of its body, positive
     on the base.
     """
 
@@ -206,12 +188,10 @@ class CoverModes:
                 BodyModes(share / float(series.alpha), share * series.J, 1.0 / series.T, local)
             )
             if thickness is not None:
-                nodes = layer_nodes(nu)
-                mine = np.full(nodes.u.size, name == "base", float)
-                kernels.append(
-                    # u is the wave number times the thickness, and the thickness is over l0
-                    [nodes.u / thickness, nodes.L, nodes.shear, sign * nodes.C, mine, 1.0 - mine]
-                )
+                u, L, shear, C = layer_nodes(nu)
+                mine = np.full(u.size, name == "base", float)
+                # u is the wave number times the thickness, and the thickness is over l0
+                kernels.append([u / thickness, L, shear, sign * C, mine, 1.0 - mine])
         self.bodies = tuple(bodies)
         together = np.concatenate(kernels, axis=1)
         self.wave, self.L, self.shear, self.C = together[:4]
@@ -255,17 +235,18 @@ def half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tupl
 
 
 @lru_cache(maxsize=64)
-def layer_nodes(nu: float) -> LayerNodes:
+def layer_nodes(nu: float) -> Floats:
     """Return the kernels of a layer at the nodes of the integrals over the wave number; kept for
     the next call.
 
     Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
     nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
-    Returns :class:`LayerNodes` of some 245 nodes.
+    Returns four rows of some 245 nodes: u, the wave number times the thickness, > 0, ascending; and
+    L - 1, T - L and C less that of a half-space (:func:`layer_excess`), each times du/u of its
+    node.
     """
     u, du = half_line_rule(_STEP, _SCALE, _ENDS)
-    L, shear, C = layer_excess(nu, u) * du
-    return LayerNodes(u, L / u, shear / u, C / u)
+    return np.array([u, *(layer_excess(nu, u) * (du / u))])
 
 
 def layer_excess(nu: float, u: Floats) -> Floats:
