@@ -556,11 +556,9 @@ def series_of_alpha(alpha: float) -> Prony:
     Returns a :class:`Prony` in creep form, with times in units of T_epsilon; for alpha = 1 it is
     elastic, without a mode.
     """
-    c = np.array([(alpha - 1.0) / alpha])
-    one = np.ones(1)
-    if alpha == 1.0:
-        c = c[:0]
-        one = one[:0]
+    # no mode of an elastic material
+    c = np.array([(alpha - 1.0) / alpha][: alpha > 1.0])
+    one = np.ones(c.shape)
     series = Prony._make(True, c, one, alpha)
     # takes the place of the cached property, which would convert the series
     series.modes = Modes(

@@ -156,14 +156,12 @@ class DriveFunctions:
         the same for all motions, else (m,).
         """
         speed = self.functions[name]
-        firsts = []
         sizes = []
         for part in self._blocks(len(speed.terms)):
             curve = speed.take(part)
             differentiate(name, curve)
-            firsts.append(values_at_start(curve.terms[:, 0]))
             sizes.append(np.abs(curve.terms).sum(axis=-1).max(axis=1, initial=0.0))
-        return np.concatenate(firsts), np.concatenate(sizes)
+        return values_at_start(speed.terms[:, 0]), np.concatenate(sizes)
 
     @cached_property
     def pieces(self) -> Floats:

@@ -424,7 +424,7 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
     return tuple(worst.tolist())
 
 
-def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
+def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> Floats:
     """Return the largest relative errors of one motion of a new map, against the integrator, at
     times from its onset on.
 
@@ -436,7 +436,7 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
     Returns (error of V and omega divided by the larger of the two, or error of the onset time
     divided by that time and the relaxation time there, if larger; error of distance and angle,
     divided by the larger so far and 1e-5 of that at rest; error of both losses, divided by the
-    energy at the start), floats.  An error that is not finite is infinite; all are 0 for a motion
+    energy at the start), (3,).  An error that is not finite is infinite; all are 0 for a motion
     outside the map.
     """
     _, _, _, j = new_map.parameters
@@ -462,7 +462,7 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
-        return 0.0, 0.0, 0.0
+        return np.zeros(3)
     exact, how = integrate_motions(new_map.parameters, start, np.ones(1), times)
     out = exact[list(_MEASURED_ROWS), 0]
     # columns of integrate(): status, steps, changes of regime, onset time, rest time
@@ -481,7 +481,7 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
     ]
     if onset > 0.0:
         errors[0] = max(errors[0], abs(onset - true_onset) / (onset + stiff_time))
-    return tuple(float(error) if math.isfinite(error) else math.inf for error in errors)
+    return np.where(np.isfinite(errors), errors, math.inf)
 
 
 def _stiff_time(new_map: FlowMap, speed: float) -> float:

@@ -122,37 +122,24 @@ class Histogram(msgspec.Struct):
         to the width of its bin, 2^-8 of the value.
 
         levels: levels of the quantiles, in [0, 1], in any order; not checked.  For others numpy
-            raises ValueError if the values were kept; else the result has no meaning, or IndexError
-            is raised.
+            raises ValueError if the values were kept; else the least or the largest value is
+            returned.
         """
         if not self.count:
             return np.full(len(levels), np.nan)
         if self.values is not None:
             return np.quantile(self.values, levels)
-        position = np.asarray(levels) * (self.count - 1)
-        lower = np.floor(position).astype(np.int64)
-        first = self._at_rank(lower)
-        second = self._at_rank(np.minimum(lower + 1, self.count - 1))
-        return first + (position - lower) * (second - first)
-
-    def _at_rank(self, ranks: Integers) -> Floats:
-        """Return the values of given ranks, assumed to be evenly distributed within each bin.
-
-        The bin of zero is no interval: it holds 0 and positive values below 1e-310, and all of them
-        count as 0.
-
-        ranks: ranks among the values in ascending order, 0 ... count - 1, (k,), int.
-        Returns the values, (k,), in the unit of the quantity, between the least and the largest
-        value.
-        """
         below, above = edges_of(self.bins)
-        above = np.where(self.bins == 0, below, above)
-        cumulative = np.cumsum(self.counts)
-        index = np.searchsorted(cumulative, ranks, side="right")
-        rank_in_bin = ranks - (cumulative[index] - self.counts[index])
-        fraction = (rank_in_bin + 0.5) / self.counts[index]
-        values = below[index] + fraction * (above[index] - below[index])
-        return np.clip(values, self.low, self.high)
+        # the bin of zero is no interval: 0 and positive values below 1e-310, which all count as 0
+        width = np.where(self.bins == 0, 0.0, above - below)
+        # ranks of the first and the last value of each bin, half a value from its edges
+        last = np.cumsum(self.counts) - 1
+        margin = 0.5 / self.counts
+        ranks = np.ravel([last - self.counts + 1, last], "F")
+        values = np.ravel([below + margin * width, below + (1.0 - margin) * width], "F")
+        return np.interp(
+            np.asarray(levels) * (self.count - 1), ranks, np.clip(values, self.low, self.high)
+        )
 
 
 def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
