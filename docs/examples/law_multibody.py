@@ -19,7 +19,8 @@ laws, gamma, j = (
     warm.j,
 )
 speed = 0.5  # of the tractor, dimensionless
-stiffness, damping = 0.02, 0.05  # force divided by P, per distance and per speed
+# force divided by P, per distance and per speed
+stiffness, damping = 0.02, 0.05
 
 
 def rates(t, y):

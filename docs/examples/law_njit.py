@@ -37,7 +37,8 @@ def rolled(law, gamma, j, V, omega, force, h):
 
 
 scene = vr.presets.RUBBER_ROLLER
-law = vr.law(scene).jitted  # the compiled loop can be called with any other law too
+# the compiled loop can be called with any other law too
+law = vr.law(scene).jitted
 gusts = np.repeat(np.random.default_rng(1).uniform(0.0, 0.01, 20), 5000)
 speeds = rolled(law, scene.gamma, scene.j, 0.5, 0.5, gusts, 1e-5)
 print(
