@@ -1,8 +1,9 @@
-"""Two rollers on a rope: a tractor at constant speed pulls one, and that one the next, by springs
-with dampers.
+"""Two rollers on ropes: a tractor at constant speed pulls the first roller, and the first roller
+pulls the second one.  Each rope is a spring with a damper.
 
-Once the train runs smoothly, every rope carries the rolling resistance of all rollers behind it: M
-of both, M of the last.  The last is of the same rubber, but colder, where its modes are slower.
+When the speeds have become constant, the force in each rope equals the rolling resistance of all
+rollers behind it: the first rope pulls both rollers, the second rope the second roller.  The second
+roller is of the same rubber, but colder, so its relaxation times are ten times longer.
 """
 
 import numpy as np
@@ -17,16 +18,17 @@ laws, gamma, j = (
     warm.gamma,
     warm.j,
 )
-speed = 0.5  # of the tractor
-stiffness, damping = 0.02, 0.05  # force over P, by distance and by speed
+speed = 0.5  # of the tractor, dimensionless
+# force divided by P, per distance and per speed
+stiffness, damping = 0.02, 0.05
 
 
 def rates(t, y):
-    """Of stretches, speeds and angular velocities."""
+    """Rates of the stretches of the ropes, of V and of omega."""
     stretch, V, omega = y.reshape(3, -1)
     closing = np.append(speed, V[:-1]) - V
     rope = stiffness * stretch + damping * closing
-    # of the rope ahead less that of the one behind
+    # force of the rope ahead minus force of the rope behind
     pull = rope - np.append(rope[1:], 0.0)
     Q, _, M_half_space, M_cylinder = np.transpose(
         [law(*state) for law, *state in zip(laws, V, omega)]
@@ -41,7 +43,7 @@ def rates(t, y):
 
 
 def jacobian(t, y):
-    """Of all rates: the ropes are linear, the law knows its slopes."""
+    """Derivatives of the rates.  The ropes are linear; the law gives its own derivatives."""
     _, V, omega = y.reshape(3, -1)
     n = V.size
     f = [law(*state, slopes=True) for law, *state in zip(laws, V, omega)]
@@ -69,7 +71,7 @@ def jacobian(t, y):
     )
 
 
-# ropes; speeds; angular velocities
+# initial values: stretches of the ropes; V; omega
 slack = np.array([0.0, 0.0, 0.1, 0.1, 0.1, 0.1])
 found = solve_ivp(
     rates, (0.0, 20.0), slack, "Radau", jac=jacobian, rtol=1e-8, atol=1e-10

@@ -1,8 +1,9 @@
-"""A roller in gusts of wind, by a loop of the user's own in numba.
+"""A roller in gusts of wind, computed by a loop of the user in numba.
 
-A linearly implicit step needs the law and its slopes once: (1 - h J) dy = h rates.  Friction makes
-V and omega go together, so the gusts move the roller as a whole, and its rolling resistance holds
-it back.
+The loop makes linearly implicit Euler steps: (1 - h J) dy = h rates, with the step h, the state y =
+(V, omega) and the matrix J of the derivatives of the rates.  Each step needs the law and its
+derivatives once.  The friction in the contact keeps omega near V, and the rolling resistance acts
+against the gusts.  All quantities are dimensionless.
 """
 
 import numba
@@ -36,7 +37,8 @@ def rolled(law, gamma, j, V, omega, force, h):
 
 
 scene = vr.presets.RUBBER_ROLLER
-law = vr.law(scene).jitted  # any other law takes the same machine code
+# the compiled loop can be called with any other law too
+law = vr.law(scene).jitted
 gusts = np.repeat(np.random.default_rng(1).uniform(0.0, 0.01, 20), 5000)
 speeds = rolled(law, scene.gamma, scene.j, 0.5, 0.5, gusts, 1e-5)
 print(

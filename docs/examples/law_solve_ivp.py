@@ -1,8 +1,8 @@
-"""A roller rolls to a stop, by SciPy's Radau with the exact Jacobian.
+"""A roller slows down, computed by Radau of SciPy with the exact derivatives of the law.
 
-V' = gamma (Q - M_half_space), j omega' = gamma (-Q - M_cylinder).  Once the roller has ceased to
-slide, friction ties omega to V within 1e-4 s, and rolling resistance brakes both over seconds: a
-stiff pair, for an implicit method.
+The equations of motion are V' = gamma (Q - M_half_space), j omega' = gamma (-Q - M_cylinder).  When
+the contact no longer slips fully, friction brings omega to V within 1e-4 s, while the rolling
+resistance slows both down over seconds.  So the equations are stiff and need an implicit method.
 """
 
 import numpy as np
@@ -15,13 +15,13 @@ law, gamma, j = vr.law(scene), scene.gamma, scene.j
 
 
 def rates(t, y):
-    """Of V and omega."""
+    """Rates of V and omega."""
     f = law(*y)
     return gamma * (f.Q - f.M_half_space), gamma / j * (-f.Q - f.M_cylinder)
 
 
 def jacobian(t, y):
-    """Slopes of the rates; M depends on V alone."""
+    """Derivatives of the rates.  M depends on V only."""
     f = law(*y, slopes=True)
     return [
         [gamma * (f.dQ_dV - f.dM_half_space_dV), gamma * f.dQ_domega],

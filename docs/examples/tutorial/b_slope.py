@@ -21,8 +21,8 @@ slope = np.radians(0.5)
 
 # %%
 # First check the assumptions of the model.  ``validity`` lists all of them.  A motion needs one
-# more than a contact at constant speed: the speed must change little in the time in which a point
-# passes through the contact (``steady`` in the list).
+# assumption that a contact at constant speed does not need: the speed must change little in the time
+# in which a point passes through the contact (``steady`` in the list).
 print(roller.validity(2.0))
 
 # %%
@@ -32,14 +32,14 @@ print(roller.validity(2.0))
 print(roller.replace(base=cool).validity(2.0).steady.sentence)
 
 # %%
-# ``steady`` finds every speed at which the pull of the slope equals the rolling resistance.
+# ``steady`` finds every speed at which the rolling resistance balances the pull of the slope.
 s = roller.steady(slope=slope)
 for V, stable in zip(s.V, s.stable, strict=True):
     print(f"{V:.3g} m/s: {'stable' if stable else 'unstable'}")
 
 # %%
-# The first is the terminal speed.  The second is unstable, and so high that it has no practical
-# meaning.
+# The first, lower speed is the terminal speed.  The second one is unstable, and so high that it has
+# no practical meaning.
 #
 # Now the roller is launched at 2 m/s without rotation.  It slides until friction has accelerated
 # its rotation.  Then it rolls, and slowly approaches its terminal speed.

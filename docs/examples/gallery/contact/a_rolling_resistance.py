@@ -30,9 +30,9 @@ axes.legend(frameon=False)
 # %%
 # ``alpha`` is the instantaneous modulus divided by the long-time modulus, ``kappa`` the radius R
 # divided by the contact length at rest.  V is in units of R/T_epsilon, with the retardation time
-# T_epsilon, and the moment M in units of the load times R.  The maximum lies near kappa V = 1.  For
-# a given material M is proportional to 1/kappa: a hard roller with a short contact has little
-# rolling resistance.
+# T_epsilon, and the moment M in units of the load times R.  The maximum lies near kappa V = 1.  At
+# a given alpha the maximum of M is proportional to 1/kappa: a hard roller with a short contact has
+# little rolling resistance.
 for alpha in (1.5, 3.0, 11.0, 81.5):
     top = vr.resistance_extrema(vr.Scene(alpha=alpha, kappa=10.0, mu=0.3))
     print(

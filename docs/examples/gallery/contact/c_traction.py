@@ -3,9 +3,9 @@ Creep force over creepage
 =========================
 
 The figure shows the creep force Q as a function of the creepage.  At low speed, and for an elastic
-material, the curve is Carter's parabola.  At higher speed the material relaxes less while it passes
-through the contact.  The contact is then shorter and stiffer, and full slip begins at a smaller
-creepage.
+material at any speed, the curve is Carter's parabola.  At higher speed the material relaxes less
+while it passes through the contact.  The contact is then shorter and stiffer, and full slip begins
+at a smaller creepage.
 """
 
 import matplotlib.pyplot as plt

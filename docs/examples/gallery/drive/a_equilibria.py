@@ -3,9 +3,10 @@ Terminal speeds on a slope
 ==========================
 
 Gravity pulls a roller down the slope with the force sin(slope) times the weight.  The roller
-settles at the speed at which the rolling resistance is equal to this force.  Above the speed of
-each maximum of the rolling resistance there is a second, unstable steady speed.  A slightly slower
-roller slows down to the stable speed below it, and a slightly faster one accelerates.
+settles at a speed at which the rolling resistance is equal to this force and rises with the speed.
+Where the rolling resistance is equal to the force but falls as the speed grows, the steady speed is
+unstable.  A slightly slower roller slows down to the next lower stable speed, and a slightly faster
+one accelerates.
 """
 
 import matplotlib.pyplot as plt
@@ -66,9 +67,9 @@ figure.suptitle(
 )
 
 # %%
-# The same for one roller in SI units.  The theory neglects inertia of the rubber, and holds up to
-# 20 % of the shear wave speed of the rubber, sqrt(G/density), with the shear modulus G.  The last
-# two steady speeds are above the shear wave speed, so the theory does not apply to them.
+# The same for one roller in SI units.  The theory neglects the inertia of the rubber, and holds up
+# to 20 % of the shear wave speed of the rubber, sqrt(G/density), with the shear modulus G.  The last
+# two steady speeds exceed the shear wave speed, so the theory does not apply to them.
 roller = vr.presets.RUBBER_CYLINDER
 s = roller.steady(slope=np.radians(0.3))
 share = roller.validity(s.V).quasistatic.value

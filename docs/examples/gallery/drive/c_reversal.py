@@ -2,9 +2,9 @@
 Braked through V = 0
 ====================
 
-A torque against the motion slows the cylinder down and then drives it backwards.  Where the speed V
-and the angular velocity omega pass through zero, their curves have a kink.  The creep force Q jumps
-there, because the trailing edge becomes the leading edge, where the stick zone forms again.
+A torque against the motion slows the cylinder down and then drives it backwards.  When the speed V
+passes through zero, the trailing edge of the contact becomes the leading edge, where the stick zone
+forms again.  Therefore the creep force Q jumps, and the curves of V and omega have a kink.
 """
 
 import matplotlib.pyplot as plt

@@ -19,9 +19,9 @@ node, saddle = s.V
 plane = np.array([-0.5, 2.0]) * saddle
 
 # %%
-# The separatrix is found like this.  For each omega the code searches the V between motions that
-# settle and motions that accelerate, by bisection.  After 30 times the slowest time constant of the
-# unstable speed it is clear which of both a motion does.
+# The separatrix is found by bisection: for each omega the code searches the V that divides motions
+# which settle from motions which accelerate.  Each motion is computed for 30 times the slowest time
+# constant at the unstable speed; then its V is clearly below or above this speed.
 across = np.linspace(*plane, 81)
 rate = s.eigenvalues[1].real.max() * scene.gamma * np.cos(slope)
 # V + j omega hardly changes while all of the contact slips

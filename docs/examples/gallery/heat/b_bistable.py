@@ -2,11 +2,11 @@
 A roller with two temperatures
 ==============================
 
-A stiff rubber in the cold dissipates little and stays cold.  A warm one dissipates much and stays
-warm.  So there are speeds at which the same roller may run at a low or at a high temperature;
-between these two temperatures lies a third one, which is unstable.  If the speed rises slowly, the
-cold roller suddenly becomes warm at a certain speed.  If the speed then falls, the roller becomes
-cold again only at a lower speed (hysteresis).
+In the cold this rubber is stiff: the roller has little loss and stays cold.  When it is warm, it
+has a large loss and stays warm.  So there are speeds at which the same roller may run at a low or
+at a high temperature; between these two temperatures lies a third one, which is unstable.  If the
+speed rises slowly, the cold roller suddenly becomes warm at a certain speed.  If the speed then
+falls, the roller becomes cold again only at a lower speed (hysteresis).
 """
 
 import matplotlib.pyplot as plt

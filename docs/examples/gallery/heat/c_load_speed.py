@@ -2,10 +2,10 @@
 The load-speed curve of a wheel
 ===============================
 
-A wheel with a cover of polyurethane, 15 mm thick and 40 mm wide, may not become hotter than 70 °C.
-The curves show the highest allowed speed at each load, for three ambient temperatures.  The wheel
-starts at the temperature of its surroundings, and its losses warm it.  Manufacturers of wheels
-state such a curve, or one point of it.
+A wheel has a cover of polyurethane, 15 mm thick and 40 mm wide.  The mean temperature of the cover
+must not exceed 70 °C.  The curves show the highest allowed speed at each load, for three ambient
+temperatures.  The wheel starts at the ambient temperature, and its losses warm it.  Manufacturers
+of wheels state such a curve, or one point of the curve.
 """
 
 import matplotlib.pyplot as plt

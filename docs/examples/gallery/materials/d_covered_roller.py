@@ -46,7 +46,8 @@ right.legend(frameon=False, title="cover", loc="lower left")
 
 # %%
 # Rubber is nearly incompressible, so its surface is stretched under the pressure.  Therefore a
-# covered roller travels faster than ``omega R``.  ``delta_0`` is its creepage without traction:
+# covered roller travels faster than ``omega R``.  ``delta_0`` is its creepage without
+# creep force (Q = 0):
 for thickness in (10e-3, 5e-3, 2.5e-3):
     covered = roller.replace(material=replace(rubber, thickness=thickness))
     c = covered.contact(1.0, delta=0.0)

@@ -3,9 +3,9 @@ Phase portrait
 ==============
 
 V is the speed of the axis and omega the angular velocity, both dimensionless.  Each line is a
-motion. In full slip (grey) friction equalises the speeds of rim and axis, and V + j omega hardly
-changes (j is the moment of inertia divided by m R^2).  Then all motions approach one common curve,
-the slow manifold (black), which is nearly free rolling, and follow it towards rest.
+motion. In full slip (grey) friction brings omega towards V, and V + j omega hardly changes (j is
+the moment of inertia divided by m R^2).  In partial slip (white) all motions approach one common
+curve, the slow manifold (black), on which omega is nearly equal to V, and follow it towards rest.
 """
 
 import matplotlib.pyplot as plt

@@ -5,8 +5,8 @@ Validity of the quasi-steady assumption
 ``roll`` uses the rolling resistance moment M(V) of steady rolling at each instant.  If the speed V
 changes slowly, the moment is in fact M(V) + N(V) V', with V' = dV/dt.  The term N V' acts as an
 added mass.  Its ratio to the inertia of the cylinder, the unsteadiness gamma N/(1 + j), is about
-the relative error of V (gamma and j: :doc:`/validity`).  It is large at low speeds.  Long
-relaxation times do not make it large.
+the relative error of V (gamma and j: :doc:`/validity`).  The unsteadiness is large
+at low speeds.  It hardly depends on the longest relaxation time.
 """
 
 import matplotlib.pyplot as plt

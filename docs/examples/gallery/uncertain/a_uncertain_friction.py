@@ -34,5 +34,6 @@ right.set(xlabel="coefficient of friction", ylabel="speed after 10 s, m/s")
 print(np.quantile(e.onset_time, [0.05, 0.5, 0.95]))
 
 # %%
-# Friction determines how long the roller slides, but not its speed afterwards.  The reason: while
-# it slides, V + j omega hardly changes (j is the moment of inertia divided by m R^2).
+# Friction determines how long the roller slides, but hardly its speed afterwards.  The reason is
+# that V + j omega hardly changes while the roller slides, whatever the friction (j is the moment of
+# inertia divided by m R^2).
