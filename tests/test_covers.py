@@ -17,7 +17,7 @@ from refusals import refused
 
 import viscoroll as vr
 from pipeline.evidence.prove import layer
-from viscoroll.laws.cover_rows import shear_of, solve_at_speed
+from viscoroll.laws.cover_rows import cover_rows, shear_of, solve_at_speed
 from viscoroll.laws.cover_solve import CoverModes, solve
 from viscoroll.tables.law_dataset import check_table
 
@@ -447,3 +447,10 @@ def test_the_mirrored_strain(series, nu, thickness, u, known):
             vr.Cover(series, nu=nu, thickness=thickness, on=on), u
         )
         assert close(f_h + f_c + g_h + g_c, sign * known, tol.COVER_MIRRORED, scale=1.0)
+
+
+def test_covers_of_one_octave_have_as_many_rows():
+    """1/tau times the thickest is a power of 2 here, which rounding missed for some."""
+    rubber = vr.Prony([2.0], [1.0])
+    nodes = vr.Cover(rubber, nu=0.4, thickness=1.2), vr.Cover(rubber, nu=0.4, thickness=1.27)
+    assert len({len(cover_rows(each, 2.0).coefficients) for each in nodes}) == 1
