@@ -196,10 +196,10 @@ class Cylinder(Methods):
     Parameters
     ----------
     R : radius, m, > 0.  Each number may be an array (n,) with one value for each cylinder; arrays
-    broadcast.
+        broadcast.
     m : mass per unit length, kg/m, > 0.
     E : long-time Young's modulus of both bodies, Pa, > 0.  E, nu, T_epsilon and T_sigma take the
-    place of ``material``.
+        place of ``material``.
     nu : Poisson's ratio, in (-1, 0.5].
     T_epsilon : retardation time, s, at least T_sigma.  If it is an array (n,), each cylinder has
         its own material, and T_ref is the largest T_epsilon.

@@ -86,7 +86,7 @@ def sample(
     rng : in place of a seed, which is then drawn from it: a numpy.random.Generator, which is
         advanced, or an argument of default_rng.
     design : "random", "latin" (hypercube) or "sobol" (scrambled); the draws are those of a run file
-    of one block.
+        of one block.
     **quantities : a number, or a frozen scipy.stats distribution, e.g.
         ``V0=scipy.stats.uniform(-1, 2)``; drawn through its inverse CDF.
 

@@ -113,7 +113,7 @@ def field_names(
     like : whether both bodies are of one material; if not, the parts of M in either body are
         default fields, and ``slopes`` adds their slopes.
     si : whether the roller is a cylinder, in SI units; ``length``, ``C_rr`` and the parts of M are
-    then default fields.
+        then default fields.
     cover : whether a body is a cover, a layer of finite thickness; ``delta_0`` is then a default
         field, and N is not available.
 
@@ -263,14 +263,14 @@ def evaluate_contact(
     Parameters
     ----------
     scene : dimensionless parameters of the roller, numbers or arrays; its material, alpha, kappa
-    and mu are read.
+        and mu are read.
     V : velocities of the axis divided by R/T_ref, any sign, an array of any shape, () for a number.
     creep : angular velocities times T_ref if ``creep_is_omega``, else creepages (omega - V)/V; any
-    shape.
+        shape.
     creep_is_omega : whether ``creep`` is omega.
     names : fields, as in :func:`field_names`.
     method : "table", from the rows of the law, or "direct", by root solves of the printed
-    equations.
+        equations.
 
     Returns
     -------

@@ -254,9 +254,9 @@ class Start(NamedTuple):
     Attributes
     ----------
     speed : lost speed, in [0, |V|]: |V| where the cylinder stays in its indentation, 0 for elastic
-    bodies and V = 0.
+        bodies and V = 0.
     distance : lost part of the distance to rest; the whole where the cylinder stays in its
-    indentation.
+        indentation.
     """
 
     speed: Any
@@ -271,11 +271,11 @@ class FreeRolling:
     Attributes
     ----------
     materials : alphas or series, each in its own unit of time, in which its slow time is near 1;
-    1.0 if elastic.
+        1.0 if elastic.
     index : index of the material of each state, in the shape of u.
     u : kappa |V| in the material's own time, dimensionless, any shape.
     g : gamma/(1 + j) in the material's own time, dimensionless, broadcasts with u; NaN without
-    gamma.
+        gamma.
     speed, time, length : factors, which broadcast with u: u times ``speed``, a time in the own unit
         times ``time`` and a distance in l0 times ``length`` are in the units of the caller.
     units : names of these units of speed, time and length; empty for dimensionless ones.

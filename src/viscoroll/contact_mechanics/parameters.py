@@ -52,7 +52,7 @@ class Roller:
     Attributes
     ----------
     scale : :class:`.Scale`, which gives the unit of each quantity by name, of a cylinder in SI
-    units; 1 of a scene.
+        units; 1 of a scene.
     material : the material, None where numbers stand for it.
     body_data : data of the bodies in SI units; None of a scene.
     about : attributes that datasets of results get, by name; empty of a scene.
@@ -93,9 +93,9 @@ class Roller:
         Parameters
         ----------
         index : index of numpy into an array (count,): an integer for one roller, a slice, a mask,
-        or integers (k,).
+            or integers (k,).
         count : number of rollers; numbers and materials of shape (count,) are indexed, all others
-        stay as they are.
+            stay as they are.
 
         Returns
         -------
@@ -427,7 +427,7 @@ class Parameters(Roller):
         Parameters
         ----------
         slope : angle, rad, in (-pi/2, pi/2), a number or an array, which broadcasts with the
-        parameters; None: level.
+            parameters; None: level.
 
         Returns
         -------

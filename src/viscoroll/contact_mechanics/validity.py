@@ -56,7 +56,7 @@ class Steadiness(Assumption):
     Attributes
     ----------
     one_percent, ten_percent : the :class:`Reach` within which the error of V is below about 1 % and
-    10 %.
+        10 %.
     start : the losses of a :class:`Start` after a long standstill.
     whole : the distance to rest, infinite for elastic bodies.
     share : part of that distance, or of the distance of a motion, at which the error of V exceeds
@@ -82,7 +82,7 @@ class Steadiness(Assumption):
         Parameters
         ----------
         free : the states, a :class:`.free_rolling.FreeRolling`, in the units of the call; gamma
-        must be known.
+            must be known.
 
         Returns
         -------
@@ -114,7 +114,7 @@ class Steadiness(Assumption):
         rolls : mask of the times at which motions are not in full slip, in the shape of u.  In full
             slip friction rules the motion, and the unsteadiness counts as 0.
         x : distances travelled in the unit of the caller, in the shape of u; NaN where they are not
-        known.
+            known.
         ends : whether ``value`` is that of each motion as a whole, () or (motions,); else, for one
             motion only, it is the largest so far at each time, (times,).
 

@@ -305,7 +305,7 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     value : what a caller gave; an int or an integer of numpy is accepted, a truth value, a float or
         a duration is not.
     low, high : smallest and largest allowed value, whole numbers; ``high`` is infinite by default,
-    no limit.
+        no limit.
 
     Returns
     -------
@@ -536,7 +536,7 @@ def run_blocks(
         more are used than there are blocks; one worker without a progress bar is the calling thread
         itself.
     progress : title of a progress bar on standard error, which appears after one second; None: no
-    bar.
+        bar.
 
     Raises
     ------

@@ -469,7 +469,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
         time, schedules and feedbacks, or None.  Labels of the fields of a schedule or a feedback
         are not examined.
     units : object with a method ``unit``, which gives the unit of each argument by name, as a
-    :class:`.scale.Scale`.
+        :class:`.scale.Scale`.
 
     Returns
     -------

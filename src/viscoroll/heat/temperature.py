@@ -217,14 +217,14 @@ class Temperatures(Equilibria):
     ----------
     temperature : of the body that relaxes (of two of one material: of both), degrees Celsius.
     stable : whether the temperature returns after a small disturbance; under a given load also the
-    speed.
+        speed.
     V : speed, m/s, given or of the load at that temperature.
     C_rr, M, M_half_space, M_cylinder : rolling resistance at that temperature.
     loss, loss_slip : power lost, W/m: all of it, and that in slip (0 of a freely rolling cylinder).
     measured : whether the material was measured at the rates of the contact; True without data.
     count : number of equilibria of each state, an int for one state.
     reason : "" where an equilibrium lies within the ranges of shift and data, else why not, for
-    each state.
+        each state.
 
     Examples
     --------
@@ -327,10 +327,10 @@ def temperature(
         :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
     conductance : heat that the body gives off per kelvin, W/(m K), > 0
-    (:func:`viscoroll.conductance`).
+        (:func:`viscoroll.conductance`).
     force, torque, slope : loads as in :func:`steady`, numbers or arrays.
     slip_share : part of the loss in slip that heats the cylinder, in [0, 1]; the rest heats the
-    base.
+        base.
 
     Returns
     -------
@@ -521,10 +521,10 @@ def pair_temperatures(
     Parameters
     ----------
     roller : a :class:`Cylinder` without arrays and thicknesses, of which both materials have a
-    ``shift``.
+        ``shift``.
     V : speed, m/s, other than 0.
     ambient, conductance : of the cylinder and of the base, degrees Celsius and W/(m K), as in
-    :func:`temperature`.
+        :func:`temperature`.
 
     Returns
     -------

@@ -482,7 +482,7 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
     Parameters
     ----------
     values : values at the nodes, (nodes of the first axis, nodes of the second, ...); without axes
-    a number or array.
+        a number or array.
     axes : coordinates of the nodes, increasing, at least two, one array (nodes,) for each axis of
         ``values``, in that order; an empty list for a single value.
     degree : 1 or 3; along an axis of fewer than degree + 1 nodes it is the number of nodes less 1.
@@ -551,7 +551,7 @@ def pack_spline(
     axes : names of its axes, in their order, of "V", "delta" and "alpha".
     logs : names of the axes in whose logarithm it runs; other names in it have no effect.
     bounds : lowest and highest value, to which kernels clip results, in the unit of the values;
-    infinite for none.
+        infinite for none.
 
     Returns
     -------

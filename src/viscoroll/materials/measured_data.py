@@ -411,7 +411,7 @@ def relative_shift(
     Parameters
     ----------
     shift : function of a temperature in degrees Celsius that returns a_T, a number, dimensionless,
-    > 0.
+        > 0.
     temperature : degrees Celsius; None: the temperature at which the shift is 1.
     reference : degrees Celsius; None likewise.
 
@@ -443,7 +443,7 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
         dimensionless, > 0; "entropic": b_T is the absolute temperature, as for an ideal network;
         None: moduli do not depend on the temperature.
     temperature, reference : degrees Celsius; a reference of None is allowed only without a vertical
-    shift.
+        shift.
 
     Returns
     -------

@@ -407,7 +407,7 @@ class DynamicModuli(ModuliRecord):
     omega : angular frequencies, rad/s, shape (n,), in the order of the file.
     storage, loss : storage and loss modulus, Pa, shape (n,).
     temperature : temperature of each point, degrees Celsius, shape (n,); None where the file has
-    none.
+        none.
     mode : "tension" (E', E'') or "shear" (G', G'').
     source : name of the file.
     columns : meaning -> heading of the column that was taken for it.

@@ -545,7 +545,7 @@ class Fit(SeriesFit):
 
     Attributes
     ----------
-    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
         as in ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
     misfit : root mean square of the relative errors, dimensionless, ``.storage`` and ``.loss``.
     kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus:
@@ -554,9 +554,9 @@ class Fit(SeriesFit):
     shifts : shift factors (:class:`.master_curve.Shifts`) where temperatures were given, else None.
     omega, storage, loss : the data, sorted and shifted, (n,) each; rad/s and the unit given.
     strain : amplitude of the strain of the test, dimensionless, of a record the geometric mean;
-    None: not known.
+        None: not known.
     vertical_shift : b_T by which the moduli were divided, as in :class:`viscoroll.Material`; None:
-    they were not.
+        they were not.
 
     Examples
     --------
@@ -630,7 +630,7 @@ class Fit(SeriesFit):
         Parameters
         ----------
         omega : angular frequencies, rad/s, > 0, not checked, of any shape, also outside of the
-        data.
+            data.
 
         Returns
         -------
@@ -655,7 +655,7 @@ class RelaxationFit(SeriesFit):
 
     Attributes
     ----------
-    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
         as in ``SeriesFit``, the base class.
     misfit : root mean square of the relative errors, dimensionless.
     t : times of the data, ascending, s, (n,).

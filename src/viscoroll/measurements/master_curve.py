@@ -299,7 +299,7 @@ def master_curve(
     Parameters
     ----------
     omega, storage, loss : columns, (n,), or lists of curves, one vector a temperature; rad/s, and
-    one unit of moduli.
+        one unit of moduli.
     temperature : degrees Celsius, one of all points, one a point, (n,), or one a curve, (curves,).
     reference : degrees Celsius; None: where a given shift is 1 (T0 of a :class:`viscoroll.WLF` or
         :class:`viscoroll.Arrhenius`, the temperature of a factor of 1), if it is within the
@@ -309,9 +309,9 @@ def master_curve(
         neighbouring curves, and interpolated to the reference (:class:`viscoroll.ShiftFactors`).
         All are divided by that of the reference.
     on : "both" or "storage": the moduli by whose overlap shifts are found; not used where shifts
-    are given.
+        are given.
     vertical_shift : b_T by which moduli are divided, relative to the reference, as in
-    :class:`viscoroll.Material`.
+        :class:`viscoroll.Material`.
 
     Returns
     -------

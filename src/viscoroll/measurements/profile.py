@@ -85,7 +85,7 @@ class Product(NamedTuple):
         Exponents of unknowns with a linear coordinate (brake, drag, nu, V0, omega0 and t0) hold
         near the values found only; such an exponent is 0 where the best value is 0.
     value : value of the product at the best fit, of the magnitudes of SI values, as V0 may be
-    negative.
+        negative.
     low, high : ends of its interval, divided by ``value``, dimensionless: low <= 1 <= high.
     near : True: the interval is by the slopes at the best fit, and the product holds within about a
         fifth of the values found; farther off other exponents hold.  False: the interval is a

@@ -131,7 +131,7 @@ def read_table(
     ----------
     path : a text file in UTF-8, UTF-16, cp1252 or Latin-1.
     is_heading_line : a function of the cells of a line, a list of texts, that returns whether they
-    are headings.
+        are headings.
     decimal : "." or ","; None: the mark that is there.  Where a mark may be a separator of
         thousands too, the table is returned with ``decimal`` "", and :meth:`Table.numbers` refuses
         numbers with a mark.

@@ -80,7 +80,7 @@ class DriveFunctions:
     tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
     gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last
-    less the drag.
+        less the drag.
     end : last time, in T_ref.
     """
 

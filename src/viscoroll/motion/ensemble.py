@@ -85,7 +85,7 @@ class Ensemble(RollResult):
         J/m: the integrals of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.
         Without a drive their sum is what (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
     force, torque, work_force, work_torque, brake_loss : likewise, as in a :class:`Motion`; 0
-    without a drive.
+        without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
     rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
     success, status : (n,), whether each reached the last output time or rest, and the code of its
@@ -99,7 +99,7 @@ class Ensemble(RollResult):
     drive_error : as in a :class:`Motion`.
     drive : loads and prescribed speeds as they were given.
     labels : labels of the starts and loads, where they came as arrays of xarray or pandas;
-    :meth:`to_xarray` has them.
+        :meth:`to_xarray` has them.
 
     Examples
     --------

@@ -63,7 +63,7 @@ class Motion(RollResult):
     drive : loads and prescribed speeds as they were given.
     t, V, omega : output times and speeds; s, m/s, rad/s.
     x, angle : distance travelled, divided by R or in m, and angle turned in radians, both 0 at t =
-    0.
+        0.
     delta : creepage (infinite where V = 0 while sliding).
     regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by
         a brake, or by a prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing
@@ -79,7 +79,7 @@ class Motion(RollResult):
         likewise.  The works are the change of (V^2 + j omega^2)/2 plus the three losses.
     power_force, power_torque : force V and torque omega, divided by P R/T_ref or in W/m.
     drive_error : largest difference seen between a callable and the polynomials that fit it,
-    dimensionless.
+        dimensionless.
     onset_time : time of the first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
     success, status, message : whether the motion reached its last output time or rest; how it
@@ -168,9 +168,9 @@ class Motion(RollResult):
         Parameters
         ----------
         fields : names of fields of the contact state; None: the default of
-        :func:`viscoroll.contact`.
+            :func:`viscoroll.contact`.
         **options : its other keywords, apart from creepage and angular velocity, which are those of
-        the motion.
+            the motion.
 
         Returns
         -------

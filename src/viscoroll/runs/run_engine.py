@@ -386,7 +386,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     ----------
     run : a run of :func:`runs.read_run`.
     threads : number of threads that the run will have; None: ``$VISCOROLL_THREADS``, else all cores
-    available.
+        available.
 
     Returns
     -------

@@ -42,7 +42,7 @@ class Verdict:
     blocks : number of blocks of the run.
     missing : numbers of the blocks that are missing or damaged, ascending.
     damaged : paths, below the store, of files that are damaged, and of files of the start that are
-    missing.
+        missing.
     finished : whether the summaries are complete and undamaged.
     """
 

@@ -127,7 +127,7 @@ class Run:
     path, text : path and text of the file.
     settings : its section [run], a :class:`RunSection`.
     inputs : its other sections, and which of their numbers are uncertain, as
-    :class:`.uncertain_inputs.Inputs`.
+        :class:`.uncertain_inputs.Inputs`.
     t : output times, dimensionless or, with [cylinder], in s, (t,).
     digest : SHA-256 of what the results depend on, apart from the number of motions, the method and
         the size of

@@ -64,9 +64,9 @@ def sobol_indices(
         count, its n, design, keep and quantiles do not.
     n : number of base points in [16, 65536], rounded up to a power of two.
     threads : number of threads; None: ``$VISCOROLL_THREADS`` or the number of cores.  The bits do
-    not depend on it.
+        not depend on it.
     progress : whether to draw a progress bar on standard error if the call takes longer than a
-    second.
+        second.
 
     Returns
     -------

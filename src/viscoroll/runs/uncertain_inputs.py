@@ -40,9 +40,9 @@ class Input:
     Attributes
     ----------
     name : name of the input, as in the columns of the results ("mu", "base_E", "tau_2",
-    "drive_torque_time_1").
+        "drive_torque_time_1").
     section, key : where it stands in the file; of a number within a table the section is
-    "section.key".
+        "section.key".
     """
 
     name: str
@@ -98,10 +98,10 @@ class Inputs:
     Attributes
     ----------
     content : name of a section of the file -> its content, with an :class:`Input` in place of each
-    uncertain number.
+        uncertain number.
     random : name -> distribution; one dimension of the unit cube each.
     joint : file -> name -> its column, (rows,); one dimension for each file: rows are drawn with
-    replacement.
+        replacement.
     correlated : names of the distributions under the Gaussian copula.
     mixing : Cholesky factor of their correlation matrix, lower triangular, (correlated,
         correlated); None without correlation.

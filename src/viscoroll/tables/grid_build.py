@@ -344,7 +344,7 @@ def build(
         None: 5 to 13 a decade between the rates of the bodies, the more the faster their compliance
         grows, and 27.
     progress : of method "coupled", whether to draw a progress bar on standard error, after one
-    second.
+        second.
     command : recorded in ``history``; default: the command line of this process.
 
     Returns

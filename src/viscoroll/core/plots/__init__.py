@@ -236,7 +236,7 @@ def save(figure: Figure, path: FilePath) -> None:
     ----------
     figure : figure of matplotlib.
     path : path of the file, whose suffix, in small or capital letters, chooses the format; it is
-    replaced if it exists.
+        replaced if it exists.
 
     Raises
     ------

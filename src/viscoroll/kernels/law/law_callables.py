@@ -314,7 +314,7 @@ class Jitted:
     ----------
     plain, address : int, addresses of the user data without slopes and with.
     function : the C function for calls from Python, with the GIL: to release it takes longer than
-    the law.
+        the law.
     function_address : int, its address.
     """
 
