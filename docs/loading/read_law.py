@@ -93,7 +93,7 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
         - 0.5 * f / kappa
     )
     side, sign, delta = np.where(V < 0.0, -1.0, 1.0), np.sign(delta), np.abs(delta)
-    # the onsets of full slip of a layer lie unlike far from free rolling
+    # the onsets of full slip of a cover lie at different distances from delta_0
     star, excess = 0.5 * mu * L / kappa, 2.0 * (g_h + g_c) / (mu * L)
     lean = -sign * excess / (1.0 + (2.0 * excess) ** 6)
     D = 4.0 * kappa * delta / mu / (1.0 + np.sqrt(1.0 + 4.0 * lean * delta / star))
