@@ -124,8 +124,7 @@ def stress(arguments: Namespace) -> None:
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed;
     FileError for a file that cannot be read or written.
 
-    The positions are equidistant and ascend in x, so that they go from the trailing to the leading
-    end for V >= 0, and from the leading to the trailing end for V < 0.
+    The positions are equidistant and ascend in x: from the trailing to the leading end for V >= 0.
     """
     import numpy as np
 
@@ -173,8 +172,7 @@ def roll(arguments: Namespace) -> None:
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
 
-    The summary of the motion, which says how it ended, is the heading of a text; where a file is
-    written it is printed too.
+    The summary of the motion is the heading of a text; where a file is written it is printed too.
     """  # noqa: E501
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
@@ -538,8 +536,8 @@ def plot(arguments: Namespace) -> None:
 def _figure_of_netcdf(path: str) -> Any:
     """Return the matplotlib figure of the content of a netCDF file.
 
-    Of a material, which has an attribute ``schema``, it shows the moduli; of the results of many
-    motions, which have a dimension ``motion``, a summary; else the result itself.
+    Of a material, with an attribute ``schema``, it shows the moduli; of many motions, with a
+    dimension ``motion``, a summary; else the result itself.
 
     path: path of a netCDF-4 file; one of netCDF-3 counts as no netCDF file.
     Raises FileError for a file that does not exist, cannot be read, or is no netCDF-4, also for a

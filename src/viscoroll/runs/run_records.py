@@ -334,8 +334,8 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
     of_a_block = record.summary is not None
     if record.run == identity(run) and (of_a_block or record.motions == run.settings.n):
         return
-    versions = record.about.get("versions", json.dumps(_software()))
-    if versions != json.dumps(_software()):
+    own = json.dumps(_software())
+    if (versions := record.about.get("versions", own)) != own:
         raise FileError(
             root, f"was written with other versions, {versions}: finish it with these, or {ADVICE}"
         )

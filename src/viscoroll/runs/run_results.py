@@ -196,11 +196,6 @@ class RunResults(Result):
         """Text of the run file."""
         return str(self.summaries.attrs["run_file"])
 
-    @property
-    def _motions_folder(self) -> Path:
-        """Folder of the motions, which exists if they are kept."""
-        return self.path / MOTIONS
-
     def motions(self) -> Dataset:
         """Open the dataset of every motion with its inputs, over (motion, t); values are read when
         they are needed.
@@ -236,7 +231,7 @@ class RunResults(Result):
         """
         import xarray as xr
 
-        if not self._motions_folder.is_dir():
+        if not (self.path / MOTIONS).is_dir():
             raise FileError(
                 self.path, 'contains summaries but no motions: run it with keep = "all"'
             )
@@ -354,7 +349,7 @@ class RunResults(Result):
             for code, count in ended
             if count
         ]
-        kept = "every motion" if self._motions_folder.is_dir() else "summaries"
+        kept = "every motion" if (self.path / MOTIONS).is_dir() else "summaries"
         units = (
             ""
             if unit_of(t.attrs)
