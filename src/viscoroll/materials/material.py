@@ -608,12 +608,13 @@ class Material(FromPrograms):
             product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (
                 self.T_ref * self.prony.tau
             )
-        # sine and cosine of the angle with this tangent; infinity has neither
-        tangent = np.minimum(product, np.finfo(float).max)
-        cosine = 1.0 / np.hypot(1.0, tangent)
-        sine = tangent * cosine
+        # with z > 1 by 1/z, so that z^2 cannot overflow: z^2/(1 + z^2) = 1/(1 + 1/z^2)
+        fast = product > 1.0
+        ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
+        whole = 1.0 + ratio * ratio
         E = self.prony.E
-        return (1.0 + (E * sine**2).sum(axis=-1))[()], (E * sine * cosine).sum(axis=-1)[()]
+        storage = 1.0 + (E * (np.where(fast, 1.0, ratio * ratio) / whole)).sum(axis=-1)
+        return storage[()], (E * (ratio / whole)).sum(axis=-1)[()]
 
     def _divide_time(self, t: ArrayLike, times: Floats) -> Floats:
         """Return t divided by each of several times of the material.
