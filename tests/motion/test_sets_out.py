@@ -65,7 +65,7 @@ def test_to_and_fro_where_friction_is_strong():
     draw = np.random.default_rng(5)
     times = np.repeat(np.arange(21.0), 2)[1:-1]
     t = np.linspace(0.0, 20.0, 61)
-    sizes = scene.mu * draw.uniform(0.1, 1.3, (2, 30, 20)) * (-1.0) ** np.arange(20)
+    sizes = scene.mu * draw.uniform(0.1, 1.3, (2, 60, 20)) * (-1.0) ** np.arange(20)
     force, torque = (vr.Schedule(times, each) for each in np.repeat(sizes, 2, axis=2))
     found, best = (
         vr.ensemble(scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque)
