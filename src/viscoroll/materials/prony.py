@@ -556,8 +556,7 @@ def series_of_alpha(alpha: float) -> Prony:
     Returns a :class:`Prony` in creep form, with times in units of T_epsilon; for alpha = 1 it is
     elastic, without a mode.
     """
-    # no mode of an elastic material
-    c = np.array([(alpha - 1.0) / alpha][: alpha > 1.0])
+    c = np.array([(alpha - 1.0) / alpha] if alpha > 1.0 else [])  # no mode of an elastic material
     one = np.ones(c.shape)
     series = Prony._make(True, c, one, alpha)
     # takes the place of the cached property, which would convert the series
