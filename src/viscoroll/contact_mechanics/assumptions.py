@@ -205,7 +205,8 @@ UNKNOWN = Validity(
             "no thickness is given: the law is that of a half-space.  It applies to a layer if the "
             "contact is at most "
             f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
-            "shear does not change the pressure on half-spaces whose Dundurs' constant is 0",
+            "examined for layers only; for half-spaces bodies compares Dundurs' constant with its "
+            "limit",
             "the state must be plane strain (a long cylinder, or one between walls) or plane "
             "stress (a thin disc)",
             "the strain of the contact is not compared with that of the data: a scene does not "
