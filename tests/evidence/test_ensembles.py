@@ -21,18 +21,14 @@ def test_a_cluster_gives_the_same_files(tmp_path):
     alone = tmp_path / "alone.zarr"
     store = tmp_path / "store.zarr"
     run_ensemble(read_run(tmp_path / "run.toml"), alone)
-    options = ["--cluster", "local", "--threads", "2"]
-    command = [
-        sys.executable,
-        "-m",
-        "viscoroll",
-        "ensemble",
-        tmp_path / "run.toml",
-        "-o",
-        store,
-        *options,
-    ]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    command = ["-m", "viscoroll", "ensemble", "run.toml", "-o", "store.zarr"]
+    command += ["--cluster", "local", "--threads", "2"]
+    process = subprocess.Popen(
+        [sys.executable, *command],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
     while process.poll() is None and len(list(store.glob("records/0*"))) < 2:
         time.sleep(0.01)
     workers = [

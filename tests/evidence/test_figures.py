@@ -20,8 +20,8 @@ pytestmark = pytest.mark.filterwarnings(
 )  # the paper's own scene is beyond the model
 
 
-@pytest.fixture(scope="module")
-def drawn():
+def test_labelled_and_saved_without_a_warning(tmp_path):
+    assert FIGURES.keys() == {name for figures in SECTIONS.values() for name in figures}
     starts = np.random.default_rng(0).uniform(-2.0, 2.0, (2, 200))
     few = vr.ensemble(
         vr.presets.PAPER_SECTION_5_ROUNDED, *starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4
@@ -32,12 +32,8 @@ def drawn():
         scene, V, delta=vr.tables.creep_nodes(scene, V, 21), alpha=[1.5, 11.0, 81.5]
     )
     given = {"ensemble": (few.to_xarray(),), "grid": (grid,)}
-    return {name: draw(*given.get(name, ())) for name, draw in FIGURES.items()}
-
-
-def test_labelled_and_saved_without_a_warning(drawn, tmp_path):
-    assert drawn.keys() == {name for figures in SECTIONS.values() for name in figures}
-    for name, figure in drawn.items():
+    for name, draw in FIGURES.items():
+        figure = draw(*given.get(name, ()))
         panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>" and axes.axison]
         assert any(axes.get_xlabel() for axes in panels), name
         for axes in panels:
@@ -96,22 +92,15 @@ kept = 40
 """
 
 
-@pytest.fixture(scope="module")
-def demo(tmp_path_factory):
-    """Configuration and output folder of a small run of every stage."""
-    folder = tmp_path_factory.mktemp("demo")
-    config = folder / "small.toml"
-    out = folder / "out"
-    config.write_text(_SMALL.format(law=folder / "paper.nc", folder=folder))
-    assert "report: " in made("", "--config", config, "-o", out, "--tables", folder)
-    assert (
-        made("", "--config", config, "-o", out, "--tables", folder) == ""
-    )  # nothing is out of date
-    return config, out
-
-
-def test_motions_from_tables_are_those_of_root_solves(demo):
-    rows = list(csv.DictReader((demo[1] / "benchmark.csv").read_text().splitlines()))
+def test_motions_from_tables_are_those_of_root_solves(tmp_path):
+    """A small run of every stage, after which nothing is out of date."""
+    config = tmp_path / "small.toml"
+    out = tmp_path / "out"
+    config.write_text(_SMALL.format(law=tmp_path / "paper.nc", folder=tmp_path))
+    given = "--config", config, "-o", out, "--tables", tmp_path
+    assert "report: " in made("", *given)
+    assert made("", *given) == ""
+    rows = list(csv.DictReader((out / "benchmark.csv").read_text().splitlines()))
     assert [row["law by"] for row in rows] == [
         "grid, 15 by 15",
         "law file",
@@ -121,5 +110,5 @@ def test_motions_from_tables_are_those_of_root_solves(demo):
     for kind in ("paper", "random"):
         grid, *exact = (float(row[f"error, {kind}"]) / float(row["rtol"]) for row in rows)
         assert 0.0 < max(exact) < tol.DEMO_MOTION < grid
-    page = (demo[1] / "index.html").read_text()
+    page = (out / "index.html").read_text()
     assert all(f"<td>{escape(row['law by'])}</td>" in page for row in rows)

@@ -98,20 +98,16 @@ def test_other_processes(elsewhere, expected):
         )
 
 
-@pytest.fixture(scope="module")
-def modes(elsewhere):
-    """``everything`` in each mode, from one process that a host library has set so."""
+def test_flushed_subnormals_change_nothing_else(elsewhere):
+    """What is a normal number in the usual mode has the same bits in one that a host library has
+    set.
+    """
     if not elsewhere.keys() >= MODES.keys():
         pytest.skip("the register is that of x86, and a C compiler reaches it")
-    return elsewhere
-
-
-def test_flushed_subnormals_change_nothing_else(modes):
-    """What is a normal number in the usual mode has the same bits in this one."""
     for mode in MODES:
-        assert modes[mode].pop("register_after") == MODES[mode]
-        for name, found in modes[mode].items():
-            usual = modes["usual"][name]
+        assert elsewhere[mode].pop("register_after") == MODES[mode]
+        for name, found in elsewhere[mode].items():
+            usual = elsewhere["usual"][name]
             normal = (
                 np.isfinite(usual)
                 & (np.abs(usual) > tol.SUBNORMAL)

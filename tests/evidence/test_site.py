@@ -1,14 +1,12 @@
 """The site: built without a warning, with every public name and every picture."""
 
 import importlib.util
-import os
 import shutil
 import subprocess
 import sys
 from types import ModuleType
 
 import pytest
-from filelock import FileLock
 from places import ROOT
 
 import viscoroll as vr
@@ -28,36 +26,19 @@ BUILD = "-W --keep-going -n -E -q -b html docs docs/_build/html"
 FEWEST_GALLERY_PAGES = 12
 
 
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """The site as `make docs` builds it: any warning is an error.  Of several workers one builds,
-    the others wait.
-    """
+def test_the_site_has_every_public_name_and_a_picture_on_each_page_of_the_gallery():
+    """As `make docs` builds it: any warning is an error."""
     missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if missing:
         pytest.skip(f"not installed (make docs): {', '.join(missing)}")
-    folder = tmp_path_factory.getbasetemp()
-    folder = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
-    with FileLock(folder / "site.lock"):
-        if not (folder / "site.built").exists():
-            for made in (
-                "_build",
-                "api",
-                "gallery",
-                "tutorial",
-            ):  # of examples and names that may be gone
-                shutil.rmtree(ROOT / "docs" / made, ignore_errors=True)
-            command = [sys.executable, "-m", "sphinx", *BUILD.split()]
-            built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-            assert built.returncode == 0, built.stderr
-            (folder / "site.built").touch()
-    return SITE
-
-
-def test_every_public_name_has_its_entry(site):
+    for made in ("_build", "api", "gallery", "tutorial"):  # of examples and names that may be gone
+        shutil.rmtree(ROOT / "docs" / made, ignore_errors=True)
+    command = [sys.executable, "-m", "sphinx", *BUILD.split()]
+    built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
     from sphinx.util.inventory import InventoryFile
 
-    held = InventoryFile.loads((site / "objects.inv").read_bytes(), uri="").data
+    held = InventoryFile.loads((SITE / "objects.inv").read_bytes(), uri="").data
     names = {name for kind, entries in held.items() if kind.startswith("py:") for name in entries}
     for name in set(vr.__all__) - {"__version__"}:
         value = getattr(vr, name)
@@ -65,13 +46,10 @@ def test_every_public_name_has_its_entry(site):
             assert {f"{value.__name__}.{own}" for own in value.__all__} - names == set()
         else:
             assert {f"viscoroll.{name}", f"{value.__module__}.{name}"} & names, name
-
-
-def test_every_gallery_page_shows_a_picture(site):
     written = sorted((ROOT / "docs/examples/gallery").rglob("*.py"))
     assert len(written) >= FEWEST_GALLERY_PAGES
     for path in written:
         name = path.relative_to(ROOT / "docs/examples").with_suffix(".html")
-        text = (site / name).read_text()
+        text = (SITE / name).read_text()
         assert "_images/sphx_glr_" in text, name
         assert "Traceback" not in text, name
