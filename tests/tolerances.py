@@ -118,9 +118,6 @@ EACH_SLOPE = 1e-11
 SCENE = 1e-15
 
 # --- cli (test_cli.py) ---
-# p at the ends of the default x of ``viscoroll stress``, over its peak: p leaves 0 like a square
-# root, x rounds at 1e-16, so 1e-8.
-CLI_EDGE = 1e-7
 #: Added to a field of a table so that ``tables validate`` must find it: beyond every interpolation
 #: error of the small tables of the test.
 CLI_WRONG = 0.1

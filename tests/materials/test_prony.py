@@ -68,6 +68,7 @@ def test_the_unit_of_time_is_free(unit):
     for name in ("zeta", "dQ_domega"):
         assert close(there[name] / unit, here[name], tol.UNIT)
     assert close(there.dM_dV / unit, here.dM_dV, tol.UNIT, scale=here.M / V)
+    assert close(there.dQ_dV / unit, here.dQ_dV, tol.SERIES_SLOPE, scale=0.3 / V)
 
 
 # --- two bodies ---
