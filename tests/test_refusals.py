@@ -63,6 +63,9 @@ CONTACT = each(
         "thickness/l0 = 0.04: must be at least 0.0625 in a call with several values": {
             "roller": THIN.replace(material=vr.Cover(1.0, nu=0.0, thickness=[0.04, 0.1]))
         },
+        "thickness/l0 = 0.005: must be larger: half the contact at rest": {
+            "roller": THIN.replace(material=vr.Cover(1.0, nu=0.0, thickness=[0.005, 0.1]))
+        },
     },
     roller=PAPER,
     V=1.0,
