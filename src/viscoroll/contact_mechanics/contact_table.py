@@ -373,12 +373,11 @@ def evaluate_law(
     loop, states = _kernel(direct)
     record: Any = material.record if isinstance(material, LawTable) else None
     coupled = record is not None and record.table is not None
-    asked = made = len(names)
+    asked = len(names)
     if coupled and not _BESIDE_OTHERS.isdisjoint(names) and "dM_dV" not in names:
         names = (*names, "dM_dV")
-        made += 1
     rows = kernel_rows(names)
-    out = np.empty((made, count))
+    out = np.empty((len(names), count))
 
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
         """Evaluate the states ``start`` to ``stop`` - 1 and write them into these columns of
