@@ -264,7 +264,7 @@ class BodyData:
         series = self.scene.series
         if not records or series is None:
             return None
-        lowest, highest = zip(*(data.transit_band for data in records))
+        lowest, highest = zip(*(data.transit_band for data in records), strict=True)
         low = max(lowest) * self.T_ref
         high = min(highest) * self.T_ref
         if self.scene.cover is not None:

@@ -87,7 +87,7 @@ ACCURACY = "M_error"
 #: l0, C_rr is M/(P R).
 _MULTIPLES = {"length": "lam", "C_rr": "M", ACCURACY: "lam"}
 #: Field of like bodies -> the field of which it is half.
-_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV")))
+_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
 _KNOWN = (

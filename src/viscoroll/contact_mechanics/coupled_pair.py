@@ -247,7 +247,7 @@ def growth(bodies: Any, times: Floats) -> Floats:
     rate = np.zeros_like(times)
     for body in bodies:
         compliance += body.share * body.instant
-        for strength, time in zip(body.J, body.T):
+        for strength, time in zip(body.J, body.T, strict=True):
             x = times / time
             compliance -= body.share * strength * np.expm1(-x)
             rate += body.share * strength * x * np.exp(-x)
@@ -538,7 +538,7 @@ class CoupledRow:
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         ends = [
             coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
-            for sign, out in zip((-1.0, 1.0), self._full)
+            for sign, out in zip((-1.0, 1.0), self._full, strict=True)
         ]
         # kappa delta at the onset of full slip of negative and of positive sign
         self._ends = [onset for onset, _ in ends]

@@ -306,7 +306,7 @@ def measure_errors(
         worst[n] = np.abs(found - exact).max(axis=0)
 
     run_blocks(compare, speeds.size, 1)
-    return dict(zip(FIELDS, worst.max(axis=0).tolist()))
+    return dict(zip(FIELDS, worst.max(axis=0).tolist(), strict=True))
 
 
 # --- Tables of the coupled solution that are made at first use ---

@@ -196,7 +196,7 @@ class Curve:
         """
         longest = _SHORT * np.maximum(2.0 * distance, _CLIMB)
         W = np.zeros(u.shape)
-        for J, T in zip(*self.modes):
+        for J, T in zip(*self.modes, strict=True):
             # distance of the time T at the start, in half contact lengths at rest, which the motion
             # may be too short for; and the part of the creep that the standstill was too short for
             L = np.minimum(2.0 * u * T, longest)
@@ -317,7 +317,7 @@ class FreeRolling:
             )
         else:
             pairs = (series_in_own_time(total_series(one)) for one in scene.material_array)
-            materials, unit = zip(*pairs)
+            materials, unit = zip(*pairs, strict=True)
             unit = np.array(unit, float)
             index = np.arange(unit.size)
         gamma = np.nan if scene.gamma is None else scene.gamma
@@ -375,7 +375,7 @@ class FreeRolling:
             return
         order = np.argsort(self.index, axis=None, kind="stable")
         ends = np.searchsorted(self.index.ravel()[order], np.arange(len(self.materials) + 1))
-        for material, (first, last) in zip(self.materials, pairwise(ends)):
+        for material, (first, last) in zip(self.materials, pairwise(ends), strict=True):
             if last > first:
                 yield material, order[first:last]
 

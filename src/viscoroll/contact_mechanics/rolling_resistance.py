@@ -236,7 +236,7 @@ def speed_nodes(law: LawTable) -> Floats:
     densities = _FAR_NODES, _CLOSE_NODES, _FAR_NODES
     parts = [
         np.linspace(start, stop, (stop - start) * density, endpoint=False)
-        for (start, stop), density in zip(pairwise(ends), densities)
+        for (start, stop), density in zip(pairwise(ends), densities, strict=True)
     ]
     return np.concatenate([*parts, ends[-1:]])
 

@@ -477,7 +477,7 @@ def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     law, kappa, mu = contacts
     # moments are times kappa
     found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
-    fields = dict(zip(FIELDS, found.T))
+    fields = dict(zip(FIELDS, found.T, strict=True))
     omega_over_V = 1.0 + delta
     half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
     cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V

@@ -129,7 +129,7 @@ class Diagnosis(NamedTuple):
         total = at_rest * load
         (own, V, Q) = self.states
         if (own == n).any():  # the state that asks for the least friction
-            V, Q = min(zip(V[own == n], Q[own == n]), key=lambda each: abs(each[1]))
+            V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 beyond = f"{at} any omega beyond the stick limit is steady"
@@ -455,7 +455,7 @@ class Steady(Equilibria):
             "rate_fast": rates[0],
             "rate_slow": rates[1],
         }
-        return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values())))
+        return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
 
 
 def append_axis(unit: Any) -> Any:

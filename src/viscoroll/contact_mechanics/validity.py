@@ -370,7 +370,9 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     thickness = float(np.min(cover.thinnest))
     layers = [(nu, h) for _, nu, h in map(cover.body, ("cylinder", "base")) if h is not None]
     limits = [np.interp(nu, _NU, _MOST_THETA) for nu, _ in layers]
-    holds = np.all([half / h <= limit for (_, h), limit in zip(layers, limits)], axis=0)
+    holds = np.all(
+        [half / h <= limit for (_, h), limit in zip(layers, limits, strict=True)], axis=0
+    )
     theta = half / cover.thinnest
     sentence = (
         f"h/l0 = {thickness:.3g}: half the contact length is up to "

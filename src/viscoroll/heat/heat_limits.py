@@ -147,12 +147,12 @@ def heat_limit(
         refuse_arrays(roller, scene, ("alpha",))
         # one state at a time: the load changes the contact length, and with it the law of a cover
         limits = np.vectorize(
-            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one))),
+            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
             otypes=[float, float, bool],
         )
         rows = limits(*arrays.values())
     names = ("V" if name == "load" else "load", "temperature", "runaway")
-    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows)}
+    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows, strict=True)}
     return Values(found, arrays, si=True, title="Limits by heat", labels=labels)
 
 

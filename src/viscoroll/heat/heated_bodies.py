@@ -323,7 +323,7 @@ class HeatStates:
             loss = np.where(np.isnan(parts[2]), np.nan, rolling + slip)
             # in the order of MOMENTS, divided by P R
             moments = np.array([parts[0] + parts[1], parts[0], parts[1]])
-        found = dict(zip(MOMENTS, moments * (load * self.R[n])))
+        found = dict(zip(MOMENTS, moments * (load * self.R[n]), strict=True))
         found |= {"C_rr": moments[0], "loss": loss, "loss_slip": slip}
         a_T = np.where(theta > self.curve.high, np.nan, factors[0])
         return found | {"V": V, "temperature": theta, "a_T": a_T}
@@ -400,7 +400,7 @@ def warm_pair(pair: Pair, *factors: tuple[Floats, Any] | None) -> Pair:
     """
     bodies = [
         warm_solid(body, *each) if each else body
-        for body, each in zip((pair.cylinder, pair.half_space), factors)
+        for body, each in zip((pair.cylinder, pair.half_space), factors, strict=True)
     ]
     return Pair(bodies[0], bodies[1], pair.plane)
 
@@ -511,7 +511,7 @@ def heat_states(
         "material": index,
     }
     shape = broadcast_shape(**arrays)
-    flat = dict(zip(arrays, broadcast_rows(arrays.values(), shape)))
+    flat = dict(zip(arrays, broadcast_rows(arrays.values(), shape), strict=True))
     names = ("R", "load", "kappa", "mu", "material", "ambient", "conductance")
     loads = None
     if driven is not None or covered:

@@ -191,7 +191,7 @@ def zeros_of(
         # stable where f falls
         n, zero, stable = zeros_between(balance, rise, f)
         parts.append((first + n, around[n] + zero, stable))
-    n, theta, stable = (np.concatenate(each) for each in zip(*parts))
+    n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
     found = theta <= hottest[n]
     return Zeros(n[found], theta[found], stable[found])
 
@@ -569,7 +569,7 @@ def pair_temperatures(
     if not speed:
         raise described_error("V", "is 0, where the bodies do not heat", "other than 0")
     curves = [shift_curve(body) for body in (pair.cylinder, pair.half_space)]
-    for at, curve in zip(around, curves):
+    for at, curve in zip(around, curves, strict=True):
         check_ambient(at, curve, "ambient")
     load = roller.load  # type: ignore[attr-defined]
     kappa = scene.kappa
@@ -583,7 +583,7 @@ def pair_temperatures(
         E', and the dimensionless speed is V T_ref/R with the T_ref of the warm pair.  mu is 1: any
         will do, since no shear acts.
         """
-        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta)))
+        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
@@ -605,7 +605,7 @@ def pair_temperatures(
         return (values[:, 1:] - values[:, :1]) / _DIFFERENCE
 
     axes = []
-    for at, G, curve in zip(around, off, curves):
+    for at, G, curve in zip(around, off, curves, strict=True):
         # the loss of a body is at most P |V|/(2 kappa)
         hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
         ends = np.log2(curve.at(np.array([at, hottest]))[0])

@@ -239,7 +239,7 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
     """
     if bad.any():
         first = np.argwhere(bad)[0]
-        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first))
+        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first, strict=True))
         found = (
             f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at "
             f"{place or variable.name}"

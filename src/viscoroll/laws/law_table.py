@@ -148,7 +148,7 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     powers[2:, 0, 0] = T_mean
     functions = _FunctionsOfW(w, powers, by_modes.values)
     x = rows.x.ravel()
-    both = zip(functions.at_speed(x), functions.at_stick_limit(x))
+    both = zip(functions.at_speed(x), functions.at_stick_limit(x), strict=True)
     powers = rows.fit_slopes(*(np.concatenate(parts).reshape(-1, *rows.x.shape) for parts in both))
     powers[[0, 4, 5], 0, 0] = 1.0
     powers[1, 0, :2] = [0.0, math.ldexp(mean, e0)]
@@ -505,7 +505,7 @@ def law_axis(low: float, high: float) -> LawAxis:
         pieces.append(np.einsum("jk,k...->j...", _nodes()[1], columns))
     rows = tuple(piece.shape[1] for piece in pieces)
     coefficients = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
-    for padded, piece in zip(coefficients, pieces):
+    for padded, piece in zip(coefficients, pieces, strict=True):
         padded[:, : piece.shape[1]] = piece
     # the slowest rate of creep is 1/T_epsilon for every alpha, and so e0 is the same
     return LawAxis(lock_array(coefficients), rows, octaves[0], tables[0].e0)
