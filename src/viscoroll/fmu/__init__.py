@@ -360,9 +360,10 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
         raise described_error(
-            "given",
-            "is a table of the coupled solution",
-            "a law without one, which FMUs do not read (tables.export writes it to .h, for C)",
+            "the law that is given",
+            "is a table of the coupled solution, which an FMU cannot contain",
+            "in its place the Cylinder, whose FMU has the fast law; vr.tables.export writes the "
+            "table to .h, for C",
         )
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
@@ -373,7 +374,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     fmpy = import_extra("fmpy", "fmu")
     compiler = shutil.which("cc")
     if compiler is None:
-        raise MissingDependencyError("cc, a compiler of C,", None)
+        raise MissingDependencyError("cc, a compiler of C (as gcc or clang),", None)
     with TemporaryDirectory() as name:
         folder = Path(name)
         tables.export(law, folder / "law.h")
@@ -425,7 +426,8 @@ def _warn_of_fast_law(given: Any, table: LawTable) -> None:
         speeds = given.l0 / given.T_ref * np.logspace(-3.0, 3.0, 61)
         error = given.replace(coupled=False).validity(speeds).traction.sentence
     warn_of_model(
-        f"the FMU has the fast law of a cover, not a table of the coupled solution: {error}"
+        "the FMU has the fast law of a cover (as with coupled=False), not a table of the coupled "
+        f"solution: {error}"
     )
 
 

@@ -96,8 +96,16 @@ class LawGrid:
         if self.kappa is not None and abs(kappa - self.kappa) > _ROUNDING * self.kappa:
             raise ParameterError("kappa", kappa, f"{self.kappa:g}, for which the grid was computed")
         if not self.rows.slips:
-            allowed = "states mu (in SI units with a load), and slips fully at both ends of delta"
-            raise ParameterError("material", repr(self), f"a grid that {allowed}")
+            lacks = (
+                "without the attribute mu"
+                if self.rows.limit == np.inf
+                else "that does not slip fully at both ends of its axis delta"
+            )
+            raise described_error(
+                "material",
+                f"is a grid {lacks}",
+                "one with mu and full slip at both ends, for a Scene (vr.law evaluates any grid)",
+            )
         # rows hold M in N for kappa = 1: a table has kappa M/(P R)
         of_moments = kappa / (self.load * self.R)
         fields = self.rows.fields * [1.0, of_moments, of_moments]
@@ -216,15 +224,18 @@ def _told_of(path: Any) -> Iterator[None]:
     manager.
 
     Such errors come of a missing variable, of values that scipy refuses and of attributes; the
-    FileError quotes their text.
+    FileError quotes the text of a ParameterError.
 
     path: path of the file, for the error.
     """
     try:
         yield
+    except ParameterError as error:
+        raise FileError(path, f"is not a grid of a law: {error}") from error
     except (KeyError, ValueError, TypeError) as error:
+        allowed = "V(V), delta(delta), Q(V, delta) and M(V) or M(V, delta), perhaps over alpha too"
         raise FileError(
-            path, f"is not a grid of a law: {' '.join(str(error).split()):.120}"
+            path, f"is not a grid of a law: must have {allowed}, and limits that are numbers"
         ) from error
 
 
@@ -304,7 +315,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
     Raises ParameterError for a mu or load that is no finite number > 0.
     """
     limit = friction_limit(table.attrs)
-    arm = float(table.attrs.get("R", 1.0))
+    arm = check_number("R", table.attrs.get("R", 1.0), above=0.0)
     most = limit / table.attrs.get("mu", 1.0) * arm  # the load acts within R of the axis
     for name, (low, high) in (_BOUNDS | dict.fromkeys(_MOMENTS, (0.0, most))).items():
         if name in table.variables and not (name in _MOMENTS and "delta" in table[name].dims):
@@ -367,7 +378,9 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
     """
     if "alpha" not in table.dims:
         if alpha is not None:
-            raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} has no axis alpha")
+            raise ParameterError(
+                "alpha", describe_value(alpha), f"left out: {path} has no axis alpha"
+            )
         return table
     nodes = table["alpha"].values
     if not (nodes[0] > 0.0 and (np.diff(nodes) > 0.0).all()):
@@ -406,7 +419,7 @@ def _in_si(table: Dataset) -> Dataset:
                 allowed += ", or 1 of a grid without dimension"
             elif given["V"] == "1":
                 allowed += ", since V has no unit"
-            raise ParameterError(f"unit of {name}", unit, allowed) from error
+            raise ParameterError(f"attribute units of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(float) * by})
     if given["V"] == "1":
         return table.assign_attrs(R=1.0, load=1.0)
@@ -464,7 +477,7 @@ def _law_of(table: Dataset) -> LawGrid:
     return LawGrid(
         rows=rows,
         R=check_number("R", table.attrs["R"], above=0.0),
-        load=float(table.attrs.get("load", 1.0)),
+        load=check_number("load", table.attrs.get("load", 1.0), above=0.0),
         title=str(table.attrs.get("title", "of another program")),
         kappa=check_number("kappa", table.attrs["kappa"], above=0.0)
         if "kappa" in table.attrs

@@ -19,6 +19,7 @@ from ..core import (
     Floats,
     ParameterError,
     check_number,
+    describe_value,
     described_error,
     is_real,
 )
@@ -78,7 +79,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
         return replace(law_table(material.law), T_ref=material.T_ref, pair=material)
     if not is_real(material):
         allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
-        raise described_error("material", f"is of type {type(material).__name__}", allowed)
+        raise ParameterError("material", describe_value(material), allowed)
     return law_table(check_number("alpha", material, low=1.0, high=HIGHEST_ALPHA))
 
 
@@ -161,8 +162,6 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
         An alpha beside the file of one material or a grid without an axis alpha; for the file of
         every alpha, or a grid over alpha, none, or one that is no number or beyond the range of the
         file.
-    ValueError
-        A variable of a law that is not numeric.
 
     Examples
     --------
@@ -184,7 +183,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     if content.attributes[KIND] != AXIS:
         if alpha is not None:
             raise ParameterError(
-                "alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material"
+                "alpha", describe_value(alpha), f"left out: {path} is the law of one material"
             )
         return parse_law(content, path)
     axis = parse_axis(content, path)
@@ -216,8 +215,8 @@ def parse_law(content: Content, path: Any) -> LawTable:
     if kind == AXIS:
         raise FileError(
             path,
-            "is the law of every alpha: for one alpha use vr.tables.law(vr.load_law(path, "
-            "alpha=11.0))",
+            "is the law of every alpha: for one, as 11, give "
+            "vr.tables.law(vr.load_law(path, alpha=11.0))",
         )
     with _refuse_incomplete(path):
         given, pair = _parse_bodies(attributes["material"], path)
@@ -288,14 +287,22 @@ def _refuse_incomplete(path: Any) -> Iterator[None]:
     manager.
 
     path: path of the file, for the error.
-    Replaces FileError, ParameterError, KeyError, TypeError and ValueError, whose text is quoted;
-    other exceptions pass.
+    Replaces FileError and ParameterError, whose text is quoted, and KeyError, TypeError and
+    ValueError; other exceptions pass.
     """
     try:
         yield
-    except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
-        text = " ".join(str(error).split())
-        raise FileError(path, f"is an incomplete law file ({text:.200}): {REMEDY}") from error
+    except (FileError, ParameterError) as error:
+        text = str(error).removeprefix(f"{path}: ")
+        raise FileError(
+            path, f"is damaged or was edited, in its attribute material: {text}; {REMEDY}"
+        ) from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise FileError(
+            path,
+            "is damaged or was edited: its variables, or its attribute material, are not those "
+            f"that were written; {REMEDY}",
+        ) from error
 
 
 def bodies_as_toml(given: Any) -> str:

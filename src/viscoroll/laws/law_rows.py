@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import Floats, ParameterError
+from ..core import Floats, described_error
 from ..kernels.numerics.interpolation import (
     chebyshev,
     powers_of_chebyshev,
@@ -217,7 +217,8 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
         allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref"
-        raise ParameterError("times", f"{1.0 / fastest:g} to {1.0 / slowest:g}", allowed)
+        found = f"range from {1.0 / fastest:g} to {1.0 / slowest:g} T_ref"
+        raise described_error("times of relaxation and creep", found, allowed)
 
 
 def modes_record(modes: Modes, weights: Floats | None = None) -> Any:

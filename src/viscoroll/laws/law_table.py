@@ -317,7 +317,7 @@ def law_table(
     if not isinstance(material, Prony | Bodies):
         material = float(material)
     elif material.shape:
-        raise ParameterError("material", repr(material), "one material, as material[i]")
+        raise ParameterError("material", repr(material), "a single one: make a call for each")
     elif isinstance(material, Bodies) and not isinstance(material, Cover):
         if material.like or material.alpha == 1.0:
             material = material.total if material.total.E.size else 1.0

@@ -293,7 +293,7 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
                     "between which laws are interpolated: make one call for each value, or take "
                     "a thicker layer or a smaller load (l0: contact length at rest of half-spaces)"
                 )
-                raise ParameterError("thickness/l0", thin, reason) from error
+                raise ParameterError("thickness/l0", f"{thin:.6g}", reason) from error
     # for each cover the address of the laws of its octave and their number of rows
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]

@@ -38,7 +38,9 @@ VERSION = 1
 #: attribute with the checksum of the numbers
 CHECKSUM = "sha256_of_numbers"
 #: what a user can do about a file that is not as it was written
-REMEDY = "write it again by `viscoroll tables law`"
+REMEDY = "write it again by vr.tables.save or `viscoroll tables law`"
+#: what a user can do about such a file of a material
+_REWRITE = "write it again by Material.to_netcdf"
 #: largest file that is read, bytes; laws have less than 10 MB
 _MOST_BYTES = 1 << 27
 #: first bytes of netCDF-4
@@ -167,10 +169,10 @@ def make_dataset(
 
 def stated_errors(dataset: Any) -> dict[str, float]:
     """Return the largest error of every function that a ``dataset`` states: relative, of a coupled
-    table absolute.
+    table absolute; NaN where none is stated.
     """
     kind = KINDS[dataset.attrs[KIND]]
-    return {name: float(dataset[name].attrs[kind.error]) for name in kind.functions}
+    return {name: float(dataset[name].attrs.get(kind.error, np.nan)) for name in kind.functions}
 
 
 def is_law(path: FilePath) -> bool:
@@ -180,15 +182,12 @@ def is_law(path: FilePath) -> bool:
     Neither the schema nor the checksum of the numbers is examined; :func:`read_law` does that.
     path: path of the file.
     Returns True where the attribute is "law" (a material or pair) or "cover"; False where it is
-    "axis" (the law of every alpha), for another HDF5 file, and for a file that is no HDF5.
-    Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal, the
-    SHA-256 at its end, is not that of its bytes.  A file without a seal is read as it is; errors of
-    h5py other than OSError pass.
+    "axis" (the law of every alpha), and for another HDF5 file.
+    Raises FileError as :func:`read_content`.
     """
-    try:
-        content = read_content(path, "material or law of viscoroll", "write it again")
-    except OSError:  # no HDF5: the reader of materials reports that
-        return False
+    content = read_content(
+        path, "material or law of viscoroll", f"{_REWRITE}, or a law by vr.tables.save"
+    )
     return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 
 
@@ -201,21 +200,8 @@ def read_law(path: FilePath) -> Content:
     Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no
     netCDF, is no law, is of another schema, lacks a variable, or has one that is not numeric.
     """
-    try:
-        content = read_content(path, "law file of viscoroll", REMEDY)
-        check_law(content, path)
-    except FileError:
-        raise
-    except Exception as error:  # libraries raise many kinds
-        if not Path(path).read_bytes().startswith(_HDF5):
-            problem = (
-                "is no netCDF file: give that of a law, as `viscoroll tables law` writes "
-                "it, or of a grid"
-            )
-            raise FileError(path, problem) from error
-        raise FileError(
-            path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}"
-        ) from error
+    content = read_content(path, "law of `viscoroll tables law`, or a grid", REMEDY)
+    check_law(content, path)
     return content
 
 
@@ -227,19 +213,24 @@ def read_content(path: FilePath, expected: str, remedy: str) -> Content:
     remedy: what to do about a damaged file, for errors.
     Returns the :class:`Content`: arrays of all variables of the root group, of a scalar a numpy
     number; and global attributes as :func:`_to_scalar` returns them.
-    Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal does not
-    match it, and any error of h5py, as OSError for a file that is no HDF5.  A file without a seal
-    is read as it is.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, is no HDF5, whose seal
+    does not match it, or that h5py does not read.  A file without a seal is read as it is.
     """
     import h5py
 
-    with h5py.File(io.BytesIO(read_sealed(path, _MOST_BYTES, expected, remedy)), "r") as file:
-        numbers = {
-            name: variable[()]
-            for name, variable in file.items()
-            if isinstance(variable, h5py.Dataset)
-        }
-        return Content(numbers, {key: _to_scalar(value) for key, value in file.attrs.items()})
+    content = read_sealed(path, _MOST_BYTES, expected, remedy)
+    if not content.startswith(_HDF5):
+        raise FileError(path, f"is not a netCDF-4 (HDF5) file: it must be a {expected}")
+    try:
+        with h5py.File(io.BytesIO(content), "r") as file:
+            numbers = {
+                name: variable[()]
+                for name, variable in file.items()
+                if isinstance(variable, h5py.Dataset)
+            }
+            return Content(numbers, {key: _to_scalar(value) for key, value in file.attrs.items()})
+    except Exception as error:  # libraries raise many kinds
+        raise FileError(path, f"is damaged, cut or incomplete: {remedy}") from error
 
 
 def _to_scalar(value: Any) -> Any:
@@ -261,30 +252,39 @@ def check_law(content: Content, path: Any) -> None:
 
     It checks in turn: that the attribute ``viscoroll_table`` is a key of :data:`KINDS`; that
     ``law_schema`` is an integer equal to :data:`VERSION`; that no variable of the kind is missing;
-    that the :func:`checksum` of the numbers is the attribute ``sha256_of_numbers``.
+    that each is numeric; that the :func:`checksum` of the numbers is the attribute
+    ``sha256_of_numbers``.
     content: :class:`Content` of the file.
     path: path of the file, for errors.
-    Returns None for a file that is as it was written; ValueError of the checksum, for a variable
-    that is not numeric, passes.
+    Returns None for a file that is as it was written.
     """
     numbers, attributes = content
     kind = str(attributes.get(KIND))  # another writer may have stored an array
     if kind not in KINDS:
-        raise FileError(path, "is not a law file of viscoroll: `viscoroll tables law` writes one")
+        raise FileError(
+            path, "is neither a law nor a grid: `viscoroll tables law` writes a law of a material"
+        )
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
         problem = f"has the law schema {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
         raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
-    missing = [
-        name for name in (*KINDS[kind].functions, *KINDS[kind].others) if name not in numbers
-    ]
-    if missing:
-        raise FileError(
-            path, f"is an incomplete law file: variable {missing[0]!r} is missing; {REMEDY}"
-        )
+    for name in (*KINDS[kind].functions, *KINDS[kind].others):
+        if name not in numbers:
+            raise FileError(
+                path, f"is an incomplete law file: variable {name} is missing; {REMEDY}"
+            )
+        if np.asarray(numbers[name]).dtype.kind not in "iuf":
+            raise FileError(path, f"is damaged or was edited: {name} is not numeric; {REMEDY}")
+    for name in ("title", "material")[: 1 if kind == AXIS else 2]:
+        if not isinstance(attributes.get(name), str):
+            raise FileError(
+                path, f"is an incomplete law: attribute {name} (a text) is missing; {REMEDY}"
+            )
     if checksum(numbers, kind) != attributes.get(CHECKSUM):
         raise FileError(
-            path, f"is damaged or was edited: its numbers are not those of its {CHECKSUM}; {REMEDY}"
+            path,
+            "is damaged or was edited: its numbers do not have the checksum that it states; "
+            f"{REMEDY}",
         )
 
 
@@ -368,29 +368,34 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
         measured that the file has.
     Returns what ``make`` returns, which may warn of a temperature that looks like kelvin.
     Raises FileError for a file that is missing, damaged, larger than 128 MiB, without a seal, no
-    material, lacks a variable, or has values out of range; so it does for each ParameterError,
-    KeyError, ValueError and OSError of ``make``, whose other exceptions pass.
+    material, lacks a variable or an attribute, or has values out of range; so it does for each
+    ParameterError, TypeError and ValueError of ``make``, whose other exceptions pass.
     """
+    numbers, about = read_content(path, "material that Material.to_netcdf wrote", _REWRITE)
+    if str(about.get(KIND)) in KINDS:
+        raise FileError(path, "is not a material file: it is a law, for vr.load_law")
+    if {"V", "Q"} <= numbers.keys():
+        raise FileError(
+            path, "is not a material file: it is a grid, for vr.load_law and vr.tables.interpolate"
+        )
+    if about.get("schema") != _SCHEMA:
+        raise FileError(
+            path,
+            f"is not a material file of viscoroll {__version__} (attribute schema): {_REWRITE}",
+        )
+    if seal_matches(Path(path).read_bytes()) is None:
+        raise FileError(
+            path,
+            "is cut, or was written by another program than viscoroll (no checksum at its end): "
+            f"{_REWRITE}",
+        )
+    if about.get("given") not in _FORMS:
+        problem = f"has the attribute given = {about.get('given')!r:.40}"
+        raise FileError(path, f"{problem}: must be {' or '.join(_FORMS)}; {_REWRITE}")
+    needed = {*_FORMS[about["given"]], "E_long", "nu", "T_ref", "alpha"}
+    if missing := sorted(needed - numbers.keys()) or sorted({"name", "measured"} - about.keys()):
+        raise FileError(path, f"is incomplete: {', '.join(missing)} missing; {_REWRITE}")
     try:
-        numbers, about = read_content(path, "material of this package", "write it again")
-        if str(about.get(KIND)) in KINDS:
-            raise FileError(path, "is not a material file: it is a law, for vr.load_law")
-        if {"V", "Q"} <= numbers.keys():
-            raise FileError(
-                path,
-                "is not a material file: it is a grid, for vr.load_law and vr.tables.interpolate",
-            )
-        if about.get("schema") != _SCHEMA:
-            raise FileError(
-                path,
-                f"is not a material file: its schema is {about.get('schema')!r}, not {_SCHEMA!r}",
-            )
-        if seal_matches(Path(path).read_bytes()) is None:
-            raise FileError(
-                path,
-                "is damaged or is not a material file of this package: the checksum "
-                "(SHA-256) at its end is missing",
-            )
         form = tuple(numbers[name] for name in _FORMS[about["given"]])
         series = (
             Prony(*form)
@@ -408,7 +413,7 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
             found["measured"] = Measured(**band, source=about["measured"], M_error=tuple(pairs))
         found |= shifts_of_toml(about.get("shifts", ""))
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
-    except (ParameterError, KeyError, ValueError, OSError) as error:
-        raise FileError(
-            path, f"is not a material file ({' '.join(str(error).split()):.200})"
-        ) from error
+    except ParameterError as error:
+        raise FileError(path, f"has a wrong value: {error}; {_REWRITE}") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise FileError(path, f"has wrong variables or attributes: {_REWRITE}") from error

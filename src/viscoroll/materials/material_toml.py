@@ -24,7 +24,7 @@ from ..core import (
     read_toml,
     section_error,
 )
-from .checked_netcdf import SUFFIX, is_law, read_law
+from .checked_netcdf import REMEDY, SUFFIX, is_law, read_law
 from .material import Material
 from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift, shifts_as_toml
 from .prony import Prony
@@ -293,7 +293,10 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
             raise section_error(other, "", "material", _NO_MATERIAL)
         if isinstance(content[section], dict) and "file" in content[section]:
             raise section_error(
-                other, section, "file", "file: the file of a material must not name another file"
+                other,
+                section,
+                "file",
+                "file: must be left out in a file that is named by file: write E, nu, ... there",
             )
         return _parse_material(other, section, content[section])
     except FileError as error:
@@ -301,7 +304,7 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
         advice = (
             ""
             if known
-            else "; file must be TOML with [material], or the .nc file of a material or its law"
+            else "; file must name a .toml with [material], or the .nc of a material or its law"
         )
         raise section_error(path, name, "file", f"{error}{advice}") from error
 
@@ -310,11 +313,13 @@ def _material_of_law(path: Path) -> Material:
     """Return the :class:`Material` of the law in the file ``path``.
 
     The attribute ``material`` of the file states it as TOML.
-    Raises FileError for a pair, for a law without units, and for a file that is damaged or no law;
-    KeyError for one without that attribute (the law of every alpha), ValueError where it is not
-    TOML.
+    Raises FileError for a pair, for a law without units, and for a file that is damaged or no law.
     """
-    content = tomllib.loads(read_law(path).attributes["material"])
+    try:
+        content = tomllib.loads(read_law(path).attributes["material"])
+    except tomllib.TOMLDecodeError as error:
+        problem = "is damaged or was edited: its attribute material is not TOML"
+        raise FileError(path, f"{problem}; {REMEDY}") from error
     if not content.keys() & set(SECTIONS):
         raise FileError(
             path,
@@ -323,7 +328,9 @@ def _material_of_law(path: Path) -> Material:
         )
     if "base" in content:
         raise FileError(
-            path, "is the law of a pair: give one material here, or load it by vr.load_law"
+            path,
+            "is the law of a pair of materials: file must name the law of one material (a pair is "
+            "the material= of a Cylinder, by vr.load_law)",
         )
     return parse_materials(path, content)["material"]
 

@@ -35,6 +35,7 @@ from ..core import (
     check_choice,
     check_integer,
     check_number,
+    describe_value,
     described_error,
     shape_error,
 )
@@ -185,19 +186,21 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
     cylinder or beside a material; FileError for a dataset of a law that is incomplete.
     """
     if str(getattr(what, "attrs", {}).get(KIND)) == "law":
-        what = parse_law(dataset_content(what), "law")
+        what = parse_law(dataset_content(what), "what")
     if isinstance(what, LawTable) and what.cover is None:
         what = Scene(kappa=1.0, mu=1.0, material=what)
     if not isinstance(what, Scene | Cylinder):
         raise ParameterError(
             "what",
-            f"{what!r:.60}",
+            describe_value(what),
             "a Scene, a Cylinder or a law of half-spaces; of a body with a layer give the Cylinder",
         )
     if shape := (what if isinstance(what, Scene) else what.scene()).shape:
         raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
     if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
-        raise described_error("alpha", "is given", "left out: the material determines alpha")
+        raise described_error(
+            "alpha", "is given", "left out beside a Cylinder or a material, which determines it"
+        )
     return what
 
 
@@ -403,7 +406,9 @@ def build(
         return _coupled_dataset(roller_of(what, None), nodes, progress)
     for name, given in {"V": V, "delta": delta}.items():
         if given is None:
-            raise ParameterError(name, None, "given: the nodes of the axis")
+            raise ParameterError(
+                name, None, "the nodes of that axis, as of vr.tables.spread or creep_nodes"
+            )
     what = roller_of(what, alpha)
     si = isinstance(what, Cylinder)
     axes = {
@@ -414,7 +419,9 @@ def build(
         axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
     if (size := math.prod(axis.size for axis in axes.values())) > MAX_NODES:
         raise described_error(
-            "the grid", f"has {size:g} nodes", f"a grid of at most {MAX_NODES:g} nodes"
+            "the grid",
+            f"has {size:.7g} nodes",
+            f"one of at most {MAX_NODES:g}, the product of those of {' and '.join(axes)}",
         )
     plane = tuple(name for name in axes if name != "delta")
     data = {

@@ -21,7 +21,14 @@ import numpy as np
 
 from .. import __version__
 from ..contact_mechanics import Contacts, CoupledPair, measure_errors
-from ..core import Dataset, FileError, ParameterError, check_integer, check_one_given
+from ..core import (
+    Dataset,
+    FileError,
+    ParameterError,
+    check_integer,
+    check_one_given,
+    describe_value,
+)
 from ..laws import (
     AXIS_FUNCTIONS,
     COVER_FUNCTIONS,
@@ -119,11 +126,11 @@ def law(
     table: LawTable | law_table.LawAxis
     if alpha is not None:
         if base is not None:
-            raise ParameterError("base", f"{base!r:.60}", "left out beside alpha")
+            raise ParameterError("base", describe_value(base), "left out beside alpha")
         if np.shape(alpha) != (2,):
             raise ParameterError(
                 "alpha",
-                f"{alpha!r:.60}",
+                describe_value(alpha),
                 "a range (lowest, highest), for example (1, 4096); for a single alpha give that "
                 "number as material",
             )
@@ -412,9 +419,6 @@ def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
         contact length.
     FileError
         A grid of a material or a cylinder, a dataset that is no table, or a law that is incomplete.
-    KeyError
-        A law without a title or a stated error, or a field of a grid without the attribute
-        ``spline_error``.
     """
     count = check_integer("n", count, 1)
     seed = check_integer("seed", seed, 0)
@@ -456,14 +460,16 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
       the field.  Allowed are 2 times the ``spline_error`` that the grid states, plus 2e-15, and at
       most half of the largest magnitude of the field at the nodes, unless that is 0.
 
+    Where the grid states no ``spline_error``, NaN is allowed, and the check fails.
     Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a
-    cylinder or a material); KeyError for a field without ``spline_error``.
+    cylinder or a material).
     """
     table_files.check_grid(table, source)
     if not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
         raise FileError(
             source,
-            "is not a grid of a scene with an alpha: only such grids can be compared with the law",
+            "is a grid of a cylinder or a material: only that of a Scene with an alpha can be "
+            "compared with the law; validate the law of the material (vr.tables.law) instead",
         )
     scene = Scene(
         alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"]
@@ -478,7 +484,8 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
         )
         # a field of zeros, as M of elastic bodies, has no such bound
         most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
-        allowed = min(SAMPLE_RATIO * float(table[name].attrs["spline_error"]) + ROUNDING, most)
+        stated = float(table[name].attrs.get("spline_error", np.nan))
+        allowed = min(SAMPLE_RATIO * stated + ROUNDING, most)
         checks.append(
             Check(
                 f"grid: {name}, splines",

@@ -68,12 +68,14 @@ def export(table: Dataset, path: str | PathLike[str]) -> None:
     source, license, the checksum and law_schema.
     """
     path = as_path(path)
-    table_files.check_content(table, "export")
+    table_files.check_content(table, "table")
     formats = LAW if table_files.is_law(table) else GRID
     suffix = path.suffix.lower()
     if suffix not in formats:
         kind = "law" if table_files.is_law(table) else "grid"
-        raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")
+        raise ParameterError(
+            "path", path, f"a name that ends in {', '.join(formats)}, as the table is a {kind}"
+        )
     formats[suffix](table, path)
 
 
@@ -124,9 +126,11 @@ def _write_modelica(table: Dataset, path: Path) -> None:
         raise described_error(
             "table",
             f"has the axes {', '.join(table_files.axes_of(table))}",
-            "a grid on V and delta, the two inputs of a Modelica table: select one alpha by "
-            "table.sel(alpha=...)",
+            "a grid over V and delta alone, the two inputs of a Modelica table: take one alpha by "
+            "table.sel(alpha=[...])",
         )
+    if "M" not in table:
+        raise described_error("table", "has no variable M", "a grid with it, as of vr.tables.build")
     V = table["V"].values
     delta = table["delta"].values
     head = np.append(0.0, delta)  # Modelica does not read the corner, but it must be there

@@ -32,6 +32,7 @@ from ..core import (
     broadcast_shape,
     check_array,
     check_names,
+    describe_value,
     read_sealed,
     write_dataset,
 )
@@ -46,6 +47,8 @@ SCHEMA_VERSION = "1.4"
 KIND = "viscoroll_table"
 #: Kind of the file of a grid.
 GRID = "grid"
+#: What a user can do about a file that is not as it was written.
+_REBUILD = "write it again by vr.tables.save or `viscoroll tables`"
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
@@ -92,26 +95,35 @@ def check_grid(table: Any, path: Any) -> None:
         A mu, or a load beside it, that is no finite number > 0.
     """
     if not hasattr(table, "attrs"):
-        raise FileError(path, f"needs a dataset, not {table!r:.60}: read a file by vr.tables.load")
+        problem = f"is {describe_value(table)}: must be a dataset"
+        raise FileError(path, f"{problem} of vr.tables.build, or of vr.tables.load(file)")
     about = table.attrs
     if is_law(table):
         raise FileError(
-            path, "has a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact"
+            path,
+            "is a law, not a grid: give vr.load_law(file) as material= of a Scene or Cylinder, and "
+            "call its contact",
         )
     if str(about.get(KIND)) != GRID:
-        problem = f"its attribute {KIND} is {about.get(KIND)!r:.40}, not {GRID!r}"
-        raise FileError(path, f"is not a table of viscoroll: {problem}")
+        raise FileError(
+            path,
+            "is not a table of viscoroll: vr.tables.build makes a grid, vr.tables.law a law, and "
+            "vr.tables.save writes either",
+        )
     version = about.get("schema_version")
     major = SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
         problem = (
             f"has the table schema {version!s:.20}, but viscoroll {__version__} reads {major}.x"
         )
-        raise FileError(path, f"{problem}: build it again, or install the version that wrote it")
+        raise FileError(path, f"{problem}: {_REBUILD}, or install the version that wrote it")
+    for name in ("title", "grid", "comment"):
+        if name not in about:
+            raise FileError(path, f"is incomplete: attribute {name} is missing; {_REBUILD}")
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
-            raise FileError(path, f"is an incomplete table: variable {name!r} is missing")
+            raise FileError(path, f"is incomplete: variable {name!r} is missing; {_REBUILD}")
         values = table[name].values
         dims = table[name].dims
         own = (name,) if name in axes else tuple(dim for dim in axes if dim in dims)
@@ -122,15 +134,19 @@ def check_grid(table: Any, path: Any) -> None:
         written = attributes(name, "load" in about)["units"]
         if unit != written:
             allowed = (
-                f"{written!r} (a grid in SI units has the attribute load: the force per "
-                "length, N/m)"
+                f"{written!r} (a grid in SI units also has the attribute load, the force per "
+                "length in N/m; others do not)"
             )
-            raise FileError(path, f"variable {name!r} is in {unit!r:.40}: must be in {allowed}")
+            raise FileError(path, f"variable {name!r} has units = {unit!r:.40}: must be {allowed}")
         if values.dtype != np.float64:
-            raise FileError(path, f"variable {name!r} must hold 64-bit floats")
+            raise FileError(
+                path, f"variable {name!r} is of type {values.dtype}: convert it by astype(float)"
+            )
         refuse_filled(table[name], path)
         if name in axes and (not values.size or (np.diff(values) <= 0.0).any()):
-            raise FileError(path, f"coordinate {name!r} must increase strictly")
+            raise FileError(
+                path, f"coordinate {name!r} must increase strictly: sort it by sortby({name!r})"
+            )
     check_nodes(table, path)
 
 
@@ -191,7 +207,7 @@ def save(table: Dataset, path: str | PathLike[str]) -> None:
     :func:`tables.load` returns the same values, bit for bit (``tests/tables/test_grids.py``,
     ``tests/tables/test_law.py``).
     """
-    check_content(table, path)
+    check_content(table, f"the table for {path}")
     plain = table.copy()
     # a table that was read has the encoding of its file, which may be another program's
     for variable in plain.variables.values():
@@ -232,18 +248,15 @@ def load(path: str | PathLike[str]) -> Dataset:
     """
     import xarray as xr
 
-    content = read_sealed(path, _MAX_BYTES, "table of viscoroll", "build it again")
+    content = read_sealed(path, _MAX_BYTES, "table of viscoroll", _REBUILD)
     try:
         # numbers as they are written: no fill values as NaN, no seconds as durations
         table = xr.load_dataset(
             io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False
         )
     except Exception as error:  # libraries raise errors of many kinds
-        raise FileError(
-            path,
-            "is damaged or is not a table of viscoroll "
-            f"({' '.join(str(error).split()):.120}): build it again",
-        ) from error
+        problem = "is damaged or is not a table of viscoroll in netCDF-4"
+        raise FileError(path, f"{problem}: {_REBUILD}") from error
     check_content(table, path)
     table.encoding["source"] = str(path)  # for messages, as where xarray reads a file
     return table
@@ -353,7 +366,7 @@ class Interpolant:
         Raises FileError if it is not a grid, is incomplete or in other units; ParameterError for
         its mu and load.
         """
-        check_grid(table, getattr(table, "encoding", {}).get("source", "interpolate"))
+        check_grid(table, getattr(table, "encoding", {}).get("source", "table"))
         self._table = table
         self._axes = axes_of(table)
         self._linear = linear
@@ -458,7 +471,8 @@ class Interpolant:
             raise ParameterError(
                 "coordinates",
                 ", ".join(points) or "none",
-                f"axes of this grid ({', '.join(self._axes)}); these fields need {wanted}",
+                f"{wanted or 'none'} for {', '.join(names)} (axes of this grid: "
+                f"{', '.join(self._axes)})",
             )
         axes = {name: self._table[name] for name in points}
         arrays = {
