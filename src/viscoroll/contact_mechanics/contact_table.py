@@ -310,7 +310,7 @@ def evaluate_contact(
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
-        allowed = "left out for many materials in one call: compute it for one of them, material[i]"
+        allowed = "left out for many materials in one call: make a call for each of them"
         refuse_fields(names, (UNSTEADY,), allowed)
         # the index of the material stands in the place of alpha
         arrays["alpha"] = np.arange(len(material), dtype=float)
@@ -581,5 +581,5 @@ def refuse_overflow(kappa: Floats, V: Floats, fastest: float = FASTEST) -> None:
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:
-        allowed = f"at most {fastest:g} (V in units of R/T_ref)"
+        allowed = f"at most {fastest:g}, R/l0 times |V| in units of R/T_ref: reduce V"
         raise ParameterError("kappa |V|", f"{largest:g}", allowed)

@@ -203,7 +203,12 @@ def branches(law: LawTable, gain: float) -> Branches:
     longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
     if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
         low, high = (bound * longest for bound in _GAIN_RANGE)
-        raise ParameterError("gain on V", f"{gain:g}", f"0, or {low:g} to {high:g} in magnitude")
+        # in units that are 1 in a scene
+        raise described_error(
+            "gain on V",
+            f"is {gain:g} load T_ref/R",
+            f"0, or {low:g} to {high:g} load T_ref/R in magnitude",
+        )
     nodes = speed_nodes(law)
     flat = np.exp2(find_zeros(lambda x: _curve(law, gain, np.exp2(x))[1], nodes))
     u = np.exp2(nodes)

@@ -561,7 +561,9 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():
         allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
-        raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
+        raise ParameterError(
+            "R/l0 (force + torque/R)/load", f"{total[wrong][0]:g}", f"{allowed} (R = load = 1 in a scene)"
+        )
     if not gain and law.alpha == 1.0:
         return States.none()
     if not law.moment_of_speed_alone:

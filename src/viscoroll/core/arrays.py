@@ -174,7 +174,7 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
     if not has_no_unit(value):
         plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
-            sentence = f"{name} is a masked array: give {name}.compressed()"
+            sentence = f"{name} is a masked array: give {name}.filled() or {name}.compressed()"
             raise ParameterError(name, "a masked array", "plain", sentence)
     try:
         array = np.asarray(plain)
@@ -341,7 +341,7 @@ def check_text(name: str, value: Any) -> None:
     if not (
         isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()
     ):
-        raise ParameterError(name, describe_value(value), "a text without NUL and surrogates")
+        raise ParameterError(name, describe_value(value), "a text that UTF-8 holds, without \\0")
 
 
 def check_choice(name: str, value: Any, *allowed: str) -> None:

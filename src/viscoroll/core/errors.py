@@ -110,7 +110,8 @@ def describe_value(value: Any) -> str:
     array "... (of type int64, shape (3,))"; of None, an int or a float the text alone; of other
     objects "... (of type NAME)".
     """
-    text = f"{' '.join(repr(value).split()):.60}"
+    text = " ".join(repr(value).split())
+    text = text if len(text) <= 60 else f"{text:.57}..."
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
         return text
     kind = next((words for types, words in _TYPE_NAMES if isinstance(value, types)), "")

@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, get_args, get_type_hints
 
 from ..kernels.numerics.cache_folder import read_private, write_private
-from .errors import FileError, ParameterError, suggestion
+from .errors import FileError, ParameterError, describe_value, suggestion
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +56,8 @@ def as_path(path: Any) -> Path:
     """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise FileError(
-            f"{path!r:.60}", "is not a path: must be a text without null characters, or a Path"
+            describe_value(path),
+            "is not a path: must be a text without null characters, or a Path",
         )
     return Path(path)
 
@@ -115,6 +116,7 @@ def replace_file(path: FilePath) -> Iterator[Path]:
                 (target.is_dir(), "a directory"),
                 (target.exists() and not target.is_file(), "not a regular file"),
                 (target.exists() and not os.access(target, os.W_OK), "read-only"),
+                (not target.parent.is_dir(), "in a folder that does not exist: make it first"),
             ):
                 if wrong:
                     raise FileError(path, f"cannot be written: it is {problem}")

@@ -322,7 +322,7 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     # different units in the order of the elements: the first is that of the result
     units = list(dict.fromkeys(unit for _, unit in parts))
     if any(isinstance(number, bool | np.bool_) for number, _ in parts):
-        raise ParameterError(name, f"{values!r:.60}", "numbers, no truth values")
+        raise ParameterError(name, describe_value(values), "numbers, no truth values")
     if len(units) > 1 and None in units:
         raise described_error(
             name, "has numbers with a unit and numbers without", "all with a unit, or all without"
@@ -414,6 +414,8 @@ def _to_seconds(name: str, value: Any) -> Any:
     # generic: a number without a unit of time
     if np.datetime_data(durations.dtype)[0] in ("generic", "Y", "M"):
         raise ParameterError(
-            name, f"{value!r:.60}", "a duration in weeks, days, hours, seconds or parts of them"
+            name,
+            describe_value(value),
+            "a duration in weeks, days, hours, seconds or parts of them",
         )
     return durations / np.timedelta64(1, "s")

@@ -151,7 +151,7 @@ class Result:
 
     def __getitem__(self, name: str) -> Any:
         if name not in self.keys():
-            raise KeyError(name)
+            raise KeyError(f"{name!r} is not in this result: it contains {', '.join(self.keys())}")
         return getattr(self, name)
 
     def __repr__(self) -> str:

@@ -14,7 +14,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..core import ParameterError, described_error
+from ..core import ParameterError, describe_value, described_error
 from .bodies import Bodies, Cover
 from .material import Material
 from .prony import Prony
@@ -77,7 +77,7 @@ class Pair:
             body = getattr(self, name)
             if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
                 named = "material" if name == "cylinder" else name
-                raise ParameterError(named, f"{body!r:.60}", "a Material")
+                raise ParameterError(named, describe_value(body), "a Material")
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
             raise ParameterError("base", "rigid", "a deformable body, since the cylinder is rigid")
         if self.covered is not None and self.plane != "strain":
