@@ -29,14 +29,20 @@ from ..core import (
     run_blocks,
     strip_labels,
 )
-from ..laws import CoverModes, pressure, series_record
+from ..laws import CoverModes, half_line_rule, layer_excess, pressure, series_record
 from ..materials import total_series
 from .contact_table import DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
-from .coupled_pair import CoupledPair, CoupledRow, depth, refuse_unsolved
+from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
 # --- Contacts by method "coupled" ---
+
+#: points of Gauss's rule in an element
+_GAUSS = 5
+#: first, last and step of s, with half length times wave number ln(1 + e^s): the transform of the
+#: pressure, squared, falls like the third power
+_WAVES = -25.0, 80.0, 0.12
 
 
 @lru_cache(maxsize=16)
@@ -185,6 +191,44 @@ def _fields_of_row(
         depths = [depth(pair.bodies, row.u, row.profile(each)) for each in creep.tolist()]
         fields[DEPTH] = np.array(depths) / kappa
     return fields
+
+
+def depth(bodies: Any, u: float, profile: Any) -> float:
+    """Return the approach of two bodies, each rigid or a layer on a rigid body.
+
+    It is the mean, weighted by the pressure, of the displacement of both surfaces (by Parseval's
+    theorem) plus that of the cylinder's profile x^2/2.
+
+    bodies: a :class:`CoupledBody` for each body that deforms, of finite thickness.
+    u: kappa |V|, dimensionless, >= 0 or infinite.
+    profile: :class:`CoupledProfile`, tractions of the state, of which nodes, shift, p and q are
+        read; x is counted from the axis, nodes + shift.
+    Returns the approach divided by l0^2/R, a float, positive where the bodies have come closer than
+    at their first touch.
+    """
+    nodes = profile.nodes
+    k, rule = half_line_rule(_WAVES[2], 2.0 / (nodes[-1] - nodes[0]), _WAVES[:2])
+    # points and weights of Gauss's rule in each element
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    halves = 0.5 * np.diff(nodes)[:, None]
+    x = (nodes[:-1, None] + halves * (1.0 + points)).ravel()
+    pressure, shear = (
+        np.interp(x, nodes, each) * (halves * weights).ravel() for each in (profile.p, profile.q)
+    )
+    waves = np.exp(-1j * np.multiply.outer(k, x))
+    p = waves @ pressure
+    q = waves @ shear
+    total = 0.0
+    for body in bodies:
+        instant, modes = body.at_speed(u)
+        compliance = wave_compliance(instant, modes, k)
+        # less the transforms of a half-space, 1 and the local coupling
+        L, _, C = layer_excess(body.nu, k * body.thickness)
+        coupling = body.sign * (body.local + C)
+        work = compliance / k * ((1.0 + L) * np.abs(p) ** 2 + 1j * coupling * q * np.conj(p))
+        total += body.share * float(rule @ work.real) / np.pi
+    square = pressure @ (x + profile.shift) ** 2
+    return float((total + 0.5 * square) / pressure.sum())
 
 
 def coupled_stress(
