@@ -30,8 +30,8 @@ from scipy.special import exp1, expi
 from ..core import ConvergenceError, Floats, ParameterError
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
-from ..laws import layer_nodes, local_coupling
-from ..materials import Bodies, series_of_alpha
+from ..laws import layer_nodes
+from ..materials import Bodies, local_coupling, series_of_alpha
 
 # --- Kernels of the boundary elements at one speed ---
 

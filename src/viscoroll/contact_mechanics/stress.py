@@ -29,8 +29,8 @@ from ..core import (
     run_blocks,
     strip_labels,
 )
-from ..laws import CoverModes, half_line_rule, layer_excess, pressure, series_record
-from ..materials import total_series
+from ..laws import CoverModes, half_line_rule, pressure, series_record
+from ..materials import layer_excess, total_series
 from .contact_table import DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
 from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
 from .model_warnings import warn_of_contact

@@ -44,7 +44,11 @@ from .measured_data import vertical_factor as vertical_factor
 from .pair import Pair as Pair
 from .pair import Plane as Plane
 from .pair import Solid as Solid
+from .pair import contact_length as contact_length
+from .pair import describe_body as describe_body
 from .pair import effective_modulus as effective_modulus
+from .pair import layer_excess as layer_excess
+from .pair import local_coupling as local_coupling
 from .prony import Block as Block
 from .prony import Prony as Prony
 from .prony import series_of_alpha as series_of_alpha
