@@ -30,7 +30,7 @@ from ..core import (
     strip_labels,
 )
 from ..laws import CoverModes, half_line_rule, pressure, series_record
-from ..materials import layer_excess, total_series
+from ..materials import layer_excess, local_coupling, total_series
 from .contact_table import DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
 from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
 from .model_warnings import warn_of_contact
@@ -206,29 +206,53 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
     Returns the approach divided by l0^2/R, a float, positive where the bodies have come closer than
     at their first touch.
     """
-    nodes = profile.nodes
-    k, rule = half_line_rule(_WAVES[2], 2.0 / (nodes[-1] - nodes[0]), _WAVES[:2])
-    # points and weights of Gauss's rule in each element
-    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    halves = 0.5 * np.diff(nodes)[:, None]
-    x = (nodes[:-1, None] + halves * (1.0 + points)).ravel()
-    pressure, shear = (
-        np.interp(x, nodes, each) * (halves * weights).ravel() for each in (profile.p, profile.q)
-    )
-    waves = np.exp(-1j * np.multiply.outer(k, x))
-    p = waves @ pressure
-    q = waves @ shear
+    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    k, weights = half_line_rule(_WAVES[2], 1.0 / half, _WAVES[:2])
+    p = transforms(profile.nodes, profile.p, k)
+    q = transforms(profile.nodes, profile.q, k)
     total = 0.0
     for body in bodies:
         instant, modes = body.at_speed(u)
         compliance = wave_compliance(instant, modes, k)
-        # less the transforms of a half-space, 1 and the local coupling
-        L, _, C = layer_excess(body.nu, k * body.thickness)
-        coupling = body.sign * (body.local + C)
-        work = compliance / k * ((1.0 + L) * np.abs(p) ** 2 + 1j * coupling * q * np.conj(p))
-        total += body.share * float(rule @ work.real) / np.pi
+        L, _, C = layer_transforms(body.nu, k * body.thickness)
+        work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
+        total += body.share * float(weights @ work.real) / np.pi
+    x, weights = _element_points(profile.nodes)
+    pressure = np.interp(x, profile.nodes, profile.p) * weights
     square = pressure @ (x + profile.shift) ** 2
     return float((total + 0.5 * square) / pressure.sum())
+
+
+def _element_points(nodes: Floats) -> tuple[Floats, Floats]:
+    """Return points and weights of Gauss's rule in each element between ascending nodes, (m,)
+    each, in the unit of ``nodes``, (n,).
+    """
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    halves = 0.5 * np.diff(nodes)[:, None]
+    return (nodes[:-1, None] + halves * (1.0 + points)).ravel(), (halves * weights).ravel()
+
+
+def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
+    """Return the Fourier transform int f(x) exp(-i k x) dx of a function f that is linear between
+    nodes.
+
+    nodes, values: ascending x divided by l0, and f there, (n,) each.
+    k: wave numbers times l0, (m,).
+    Returns complex numbers, (m,), in the unit of f, by Gauss's rule in each element.
+    """
+    x, weights = _element_points(nodes)
+    return np.exp(-1j * np.multiply.outer(k, x)) @ (np.interp(x, nodes, values) * weights)
+
+
+def layer_transforms(nu: float, u: Floats) -> Floats:
+    """Return the transforms L, T and C (:mod:`.coupled_pair`) of a bonded layer.
+
+    nu: Poisson's ratio.
+    u: wave numbers times the thickness, > 0, (n,).
+    Returns L and T divided by those of a half-space, and C, dimensionless, (3, n).
+    """
+    L, shear, C = layer_excess(nu, u)
+    return np.array([1.0 + L, 1.0 + L + shear, local_coupling(nu) + C])
 
 
 def coupled_stress(
