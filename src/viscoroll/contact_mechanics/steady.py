@@ -562,7 +562,9 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     if wrong.any():
         allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
         raise ParameterError(
-            "R/l0 (force + torque/R)/load", f"{total[wrong][0]:g}", f"{allowed} (R = load = 1 in a scene)"
+            "R/l0 (force + torque/R)/load",
+            f"{total[wrong][0]:g}",
+            f"{allowed} (R = load = 1 in a scene)",
         )
     if not gain and law.alpha == 1.0:
         return States.none()
