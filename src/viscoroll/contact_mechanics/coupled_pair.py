@@ -27,7 +27,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import exp1, expi
 
-from ..core import ConvergenceError, Floats, ParameterError
+from ..core import ConvergenceError, Floats, described_error
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws import layer_nodes
@@ -347,14 +347,14 @@ class CoupledPair(NamedTuple):
         Raises ParameterError for several materials.
         """
         material = scene.material
+        if np.size(scene.alpha) > 1 or (material is not None and material.shape):
+            raise described_error(
+                "the material (alpha)",
+                "has several values",
+                "a single one with method='coupled': make a call for each",
+            )
         if material is None:
             material = series_of_alpha(float(np.asarray(scene.alpha).item()))
-        if material.shape:
-            raise ParameterError(
-                "material",
-                f"{material!r:.60}",
-                "one material, as material[i], since method='coupled' takes one at a time",
-            )
         if isinstance(material, Bodies):
             shares = {"base": 1.0 - material.share, "cylinder": material.share}
             parts = [(side, share, *material.body(side)) for side, share in shares.items()]

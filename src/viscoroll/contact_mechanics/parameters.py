@@ -23,6 +23,7 @@ from ..core import (
     check_bool,
     check_number,
     check_one_given,
+    describe_value,
     described_error,
     format_value,
     read_only,
@@ -201,10 +202,8 @@ class Parameters(Roller):
             values["alpha"] = material
             material = None
         elif material is not None:
-            allowed = (
-                "a Prony, a Bodies, or a law of load_law (in SI units: a Material of a Cylinder)"
-            )
-            raise ParameterError("material", f"{material!r:.60}", allowed)
+            allowed = "a Prony, a Bodies, or a law of vr.load_law (a Material is for a Cylinder)"
+            raise ParameterError("material", describe_value(material), allowed)
         arrays = {"alpha": check_array("alpha", values.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
         for name, value in values.items():
@@ -514,7 +513,7 @@ def resolve_model(
     not broadcast, and what the scene of a Cylinder does not allow.
     """
     if not isinstance(roller, Roller):
-        sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
+        sentence = f"{call} takes a Scene or a Cylinder, not {describe_value(roller)}"
         if isinstance(roller, LawGrid):
             sentence = (
                 f"{call} takes a Scene or a Cylinder, not a grid: give the grid as the material= "
@@ -540,10 +539,7 @@ def refuse_cover(scene: Parameters, why: str) -> None:
     ``why``: end of the message, the reason why the function does not take one.
     """
     if scene.cover is not None:
-        sentence = (
-            f"thickness = {format_value(scene.cover.thickness)} (divided by l0): for a "
-            f"layer of finite thickness {why}"
-        )
+        sentence = f"thickness is given: for a layer of finite thickness {why}"
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
     if scene.tabulated:
         raise ParameterError(
@@ -582,7 +578,9 @@ def refuse_arrays(
         if np.shape(getattr(scene, name)):
             cause = next(each for each in (name, *_CAUSES) if np.shape(given.get(each, 0.0)))
             if cause == "material":
-                raise ParameterError(cause, repr(given[cause]), "one material, as material[i]")
+                raise ParameterError(
+                    cause, describe_value(given[cause]), "a single one: make a call for each"
+                )
             raise shape_error(cause, np.shape(given[cause]), allowed)
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import Booleans, Floats, Integers, ParameterError
+from ..core import Booleans, Floats, Integers, described_error
 from ..laws import LawTable
 from .contact_table import pure_rolling_fields
 from .model_warnings import warn_of_contact

@@ -77,7 +77,7 @@ class Schedule:
             (times[..., 1:] < times[..., :-1], "fall after {:.6g}", "in ascending order"),
             (
                 times[..., 2:] == times[..., :-2],
-                "have {:.6g} three times",
+                "contain {:.6g} three times",
                 "given once, or twice for a jump",
             ),
         ):
@@ -258,7 +258,9 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
         given = theta[steep].flat[0]
-        allowed = f"in (-pi/2, pi/2), in radians; {given:g} degrees are {np.radians(given):.4g}"
+        allowed = "in (-pi/2, pi/2), in radians"
+        if abs(given) >= 2.0:  # a number that looks like degrees
+            allowed += f"; {given:g} degrees are {np.radians(given):.4g}"
         raise ParameterError("slope", f"{given:g}", allowed)
     return np.tan(theta), np.cos(theta)
 
@@ -549,9 +551,7 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
         )
     except ValueError as error:
         names = " and ".join(arrays)
-        sentence = (
-            f"{names} have unlike coordinates: align them first ({str(error).splitlines()[0]:.120})"
-        )
+        sentence = f"{names} have unlike coordinates: align them first, by xarray.align"
         raise ParameterError(names, "unlike coordinates", "aligned", sentence) from error
     like = next(iter(whole.values())).drop_attrs()
     # from the last array to the first, whose coordinates take the place of later ones
@@ -585,7 +585,7 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     index = first.index
     if not all(index.equals(other.index) for other in others):
         names = " and ".join(series)
-        sentence = f"{names} have different indexes: align them first"
+        sentence = f"{names} have different indexes: align them first, by reindex_like"
         raise ParameterError(names, "unlike indices", "of one index", sentence)
     # the levels of the index as columns; the last column has the values, with a name that no
     # level has, since reset_index refuses a second column of one name

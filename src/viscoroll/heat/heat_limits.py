@@ -31,6 +31,7 @@ from ..core import (
     check_number,
     check_one_given,
     described_error,
+    format_value,
     shape_error,
     strip_labels,
 )
@@ -376,7 +377,7 @@ def conductance(
         fault = "is 'cooled', but thickness and conductivity of the cover are not both given"
         raise described_error("core", fault, "'insulated', or give both")
     if h is not None and np.any(h >= arrays["R"]):
-        raise ParameterError("thickness", h, f"below R = {R}")
+        raise ParameterError("thickness", format_value(h), f"below R = {format_value(R)}")
     # circumference at the middle of the cover; of the surface where nothing is conducted
     width = 2.0 * math.pi * (arrays["R"] if h is None or k is None else arrays["R"] - 0.5 * h)
     # with a source q of unit volume the mean rise of a slab is q h^2/(12 k) (4 + B)/(1 + B) if one
@@ -540,7 +541,7 @@ def warming(
             rates, span, y, "DOP853", stops, rtol=_TIME_TOLERANCE, atol=_TIME_TOLERANCE
         )
         if not found.success:
-            what = f"cannot be integrated to t = {span[1]:g} s ({found.message})"
+            what = f"grows too fast between t = {span[0]:g} and {span[1]:g} s"
             raise described_error(
                 "temperature", what, "bounded: reduce V or the load, or shorten t"
             )

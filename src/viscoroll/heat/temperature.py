@@ -534,8 +534,8 @@ def pair_temperatures(
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
     if pair is None or scene.shape or pair.covered:
-        problem = "has arrays, a layer or no Material"
-        raise described_error("roller", problem, "a Cylinder of two half-spaces")
+        problem = "has arrays, a thickness or no Material"
+        raise described_error("roller", problem, "a Cylinder of two Materials, without thickness")
     speed = abs(check_number("V", V, unit=scale))
     around = check_array("ambient", ambient)
     off = check_array("conductance", conductance, above=0.0)

@@ -96,15 +96,10 @@ class LawGrid:
         if self.kappa is not None and abs(kappa - self.kappa) > _ROUNDING * self.kappa:
             raise ParameterError("kappa", kappa, f"{self.kappa:g}, for which the grid was computed")
         if not self.rows.slips:
-            lacks = (
-                "without the attribute mu"
-                if self.rows.limit == np.inf
-                else "that does not slip fully at both ends of its axis delta"
-            )
             raise described_error(
                 "material",
-                f"is a grid {lacks}",
-                "one with mu and full slip at both ends, for a Scene (vr.law evaluates any grid)",
+                "is a grid without mu, or without full slip at both ends of its axis delta",
+                "one with both for a Scene (vr.law evaluates any grid)",
             )
         # rows hold M in N for kappa = 1: a table has kappa M/(P R)
         of_moments = kappa / (self.load * self.R)

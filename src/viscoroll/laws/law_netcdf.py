@@ -287,17 +287,11 @@ def _refuse_incomplete(path: Any) -> Iterator[None]:
     manager.
 
     path: path of the file, for the error.
-    Replaces FileError and ParameterError, whose text is quoted, and KeyError, TypeError and
-    ValueError; other exceptions pass.
+    Replaces FileError, ParameterError, KeyError, TypeError and ValueError; other exceptions pass.
     """
     try:
         yield
-    except (FileError, ParameterError) as error:
-        text = str(error).removeprefix(f"{path}: ")
-        raise FileError(
-            path, f"is damaged or was edited, in its attribute material: {text}; {REMEDY}"
-        ) from error
-    except (KeyError, TypeError, ValueError) as error:
+    except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
         raise FileError(
             path,
             "is damaged or was edited: its variables, or its attribute material, are not those "

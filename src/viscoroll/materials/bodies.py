@@ -27,6 +27,7 @@ from ..core import (
     check_array,
     check_choice,
     check_number,
+    describe_value,
     described_error,
     format_value,
     is_real,
@@ -96,7 +97,9 @@ class Bodies(OneOrMany):
         bodies = {"cylinder": self.cylinder, "base": self.base}
         for name, body in bodies.items():
             if not isinstance(body, Prony):
-                raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
+                raise ParameterError(
+                    name, describe_value(body), "a Prony series, or one for each pair"
+                )
         if self.poisson is not None:
             values = check_array("poisson", self.poisson, above=-1.0, high=0.5)
             if values.shape != (2,):
@@ -395,7 +398,7 @@ class Cover(Bodies):
         for name, body, also in (("series", series, "an alpha"), ("other", other, "None")):
             if not isinstance(body, Prony) or body.shape:
                 allowed = f"a Prony series of one material, or {also}"
-                raise ParameterError(name, f"{body!r:.60}", allowed)
+                raise ParameterError(name, describe_value(body), allowed)
         check_choice("on", on, "cylinder", "base")
         ratio = check_array("nu", nu, low=0.0, high=0.5)
         other_nu = check_number("other_nu", other_nu, low=0.0, high=0.5)

@@ -252,8 +252,8 @@ def check_law(content: Content, path: Any) -> None:
 
     It checks in turn: that the attribute ``viscoroll_table`` is a key of :data:`KINDS`; that
     ``law_schema`` is an integer equal to :data:`VERSION`; that no variable of the kind is missing;
-    that each is numeric; that the :func:`checksum` of the numbers is the attribute
-    ``sha256_of_numbers``.
+    that the attributes title, source and, of a material, material are texts; that the
+    :func:`checksum` of the numbers, which must be numeric, is the attribute ``sha256_of_numbers``.
     content: :class:`Content` of the file.
     path: path of the file, for errors.
     Returns None for a file that is as it was written.
@@ -268,19 +268,18 @@ def check_law(content: Content, path: Any) -> None:
     if not isinstance(schema, int | np.integer) or schema != VERSION:
         problem = f"has the law schema {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
         raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
-    for name in (*KINDS[kind].functions, *KINDS[kind].others):
-        if name not in numbers:
-            raise FileError(
-                path, f"is an incomplete law file: variable {name} is missing; {REMEDY}"
-            )
-        if np.asarray(numbers[name]).dtype.kind not in "iuf":
-            raise FileError(path, f"is damaged or was edited: {name} is not numeric; {REMEDY}")
-    for name in ("title", "material")[: 1 if kind == AXIS else 2]:
+    for name in ("title", "source", "material")[: 2 if kind == AXIS else 3]:
         if not isinstance(attributes.get(name), str):
-            raise FileError(
-                path, f"is an incomplete law: attribute {name} (a text) is missing; {REMEDY}"
-            )
-    if checksum(numbers, kind) != attributes.get(CHECKSUM):
+            raise FileError(path, f"is an incomplete law: attribute {name} is missing; {REMEDY}")
+    try:
+        found = checksum(numbers, kind)
+    except KeyError as error:
+        raise FileError(
+            path, f"is an incomplete law: variable {error} is missing; {REMEDY}"
+        ) from error
+    except ValueError:  # a variable that is not numeric
+        found = ""
+    if found != attributes.get(CHECKSUM):
         raise FileError(
             path,
             "is damaged or was edited: its numbers do not have the checksum that it states; "
@@ -393,8 +392,7 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
         )
     if about.get("schema") != _SCHEMA:
         raise FileError(
-            path,
-            f"is not a material file of viscoroll {__version__} (attribute schema): {_REWRITE}",
+            path, f"is not a material of viscoroll {__version__} (attribute schema): {_REWRITE}"
         )
     if seal_matches(Path(path).read_bytes()) is None:
         raise FileError(
@@ -403,11 +401,11 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
             f"{_REWRITE}",
         )
     if about.get("given") not in _FORMS:
-        problem = f"has the attribute given = {about.get('given')!r:.40}"
-        raise FileError(path, f"{problem}: must be {' or '.join(_FORMS)}; {_REWRITE}")
-    needed = {*_FORMS[about["given"]], "E_long", "nu", "T_ref", "alpha"}
-    if missing := sorted(needed - numbers.keys()) or sorted({"name", "measured"} - about.keys()):
-        raise FileError(path, f"is incomplete: {', '.join(missing)} missing; {_REWRITE}")
+        raise FileError(
+            path,
+            f"has the attribute given = {about.get('given')!r:.40}: must be "
+            f"{' or '.join(_FORMS)}; {_REWRITE}",
+        )
     try:
         form = tuple(numbers[name] for name in _FORMS[about["given"]])
         series = (
@@ -416,7 +414,8 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
             else Prony.creep(*form, alpha=numbers["alpha"])
         )
         found: dict[str, Any] = {
-            name: numbers[name] for name in ("nu", "T_ref", *_OPTIONAL) if name in numbers
+            name: numbers[name]
+            for name in ("nu", "T_ref", *filter(numbers.__contains__, _OPTIONAL))
         }
         if "measured_low" in numbers:
             band: dict[str, Any] = {name: numbers.get(f"measured_{name}") for name in _BAND}
@@ -431,5 +430,7 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
     except ParameterError as error:
         raise FileError(path, f"has a wrong value: {error}; {_REWRITE}") from error
-    except (KeyError, TypeError, ValueError) as error:
+    except KeyError as error:
+        raise FileError(path, f"is incomplete: {error} is missing; {_REWRITE}") from error
+    except (TypeError, ValueError) as error:
         raise FileError(path, f"has wrong variables or attributes: {_REWRITE}") from error

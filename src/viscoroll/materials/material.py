@@ -22,6 +22,7 @@ from ..core import (
     check_array,
     check_number,
     check_text,
+    describe_value,
 )
 from .importers import FromPrograms, check_poisson
 from .measured_data import Measured, check_celsius, check_fields, relative_shift, vertical_factor
@@ -106,7 +107,7 @@ class Material(FromPrograms):
         (:func:`.measured_data.check_celsius`).
         """
         if not isinstance(self.prony, Prony) or self.prony.shape:
-            raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
+            raise ParameterError("prony", describe_value(self.prony), "one Prony series")
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
@@ -122,7 +123,7 @@ class Material(FromPrograms):
         given = [name for name in ("density", "thickness") if getattr(self, name) is not None]
         check_fields(self, SI, **dict.fromkeys(["T_ref", *given], 0.0))
         if not isinstance(self.measured, Measured | None):
-            raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
+            raise ParameterError("measured", describe_value(self.measured), "a vr.Measured")
         if self.temperature is not None:
             object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
         if self.shift is not None:
@@ -299,7 +300,7 @@ class Material(FromPrograms):
         True
         """
         shift = self.shift if shift is None else shift
-        _refuse_no_shift("shift", shift, "a WLF, an Arrhenius")
+        _refuse_no_shift("shift", shift, "given, to the Material or here, as a WLF, an Arrhenius")
         assert shift is not None
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
@@ -595,4 +596,4 @@ def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
     """
     if not callable(shift) or isinstance(shift, type):
         allowed = f"{allowed} or a function of the temperature"
-        raise ParameterError(name, f"{shift!r:.60}", allowed)
+        raise ParameterError(name, describe_value(shift), allowed)

@@ -318,8 +318,9 @@ def _material_of_law(path: Path) -> Material:
     try:
         content = tomllib.loads(read_law(path).attributes["material"])
     except tomllib.TOMLDecodeError as error:
-        problem = "is damaged or was edited: its attribute material is not TOML"
-        raise FileError(path, f"{problem}; {REMEDY}") from error
+        raise FileError(
+            path, f"is damaged or was edited: its attribute material is not TOML; {REMEDY}"
+        ) from error
     if not content.keys() & set(SECTIONS):
         raise FileError(
             path,

@@ -329,8 +329,10 @@ class ShiftFactors:
         first to the last.
         """
         if len(self.a_T) < fewest:
-            raise ParameterError(
-                "temperature", f"{len(self.a_T)} temperatures", f"at least {fewest} for this law"
+            raise described_error(
+                "temperature",
+                f"has {len(self.a_T)} values",
+                f"a list of at least {fewest} for this law",
             )
         if not self.a_T[-1] < self.a_T[0]:
             found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"

@@ -27,6 +27,7 @@ from ..core import (
     ParameterError,
     broadcast_shape,
     check_array,
+    described_error,
     shape_error,
 )
 from .prony_forms import (
@@ -76,7 +77,7 @@ class OneOrMany:
 
     def __len__(self) -> int:
         if not self.shape:
-            raise TypeError("len() needs an array of materials, and this is a single one")
+            raise TypeError("this is a single material: only several have a length and an index")
         return self.shape[0]
 
     def __bool__(self) -> bool:
@@ -201,7 +202,7 @@ class Prony(OneOrMany):
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
-            allowed = f"1/(1 - sum J), here {1.0 / rest[off].flat[0]!s} to rounding"
+            allowed = f"left out, or 1/(1 - sum J) = {1.0 / rest[off].flat[0]!s}"
             raise ParameterError("alpha", given[off].flat[0], allowed)
         if (given > HIGHEST_ALPHA).any():
             raise ParameterError(
@@ -258,6 +259,7 @@ class Prony(OneOrMany):
         Raises TypeError or IndexError for a single material, IndexError for an index beyond the n
         materials.
         """
+        len(self)  # refuses a single material
         strengths = self._strengths[which]
         times = self._times[which]
         alpha = self.alpha[which]
@@ -528,13 +530,13 @@ def _check_modes(
     present = values > 0.0
     most = int(present.sum(axis=-1).max(initial=0))
     if most > MOST_MODES:
-        raise ParameterError(names[1], f"{most} times", f"at most {MOST_MODES}")
+        raise described_error(names[1], f"has {most} times", f"a list of at most {MOST_MODES}")
     longest = each.max(axis=-1, initial=0.0, where=present)
     shortest = each.min(axis=-1, initial=np.inf, where=present)
     wide = longest > LARGEST_TIME_RATIO * shortest
     if wide.any():
-        ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
-        raise ParameterError(names[1], ends, f"within a factor of {LARGEST_TIME_RATIO:g}")
+        ends = f"ranges from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
+        raise described_error(names[1], ends, f"within a factor of {LARGEST_TIME_RATIO:g}")
     # modes without strength are last (sort_modes); those that no material has are cut off
     return values[..., :most], each[..., :most]
 

@@ -95,8 +95,11 @@ def check_grid(table: Any, path: Any) -> None:
         A mu, or a load beside it, that is no finite number > 0.
     """
     if not hasattr(table, "attrs"):
-        problem = f"is {describe_value(table)}: must be a dataset"
-        raise FileError(path, f"{problem} of vr.tables.build, or of vr.tables.load(file)")
+        raise FileError(
+            path,
+            f"is {describe_value(table)}: must be a dataset of vr.tables.build, or of "
+            "vr.tables.load(file)",
+        )
     about = table.attrs
     if is_law(table):
         raise FileError(
@@ -117,9 +120,6 @@ def check_grid(table: Any, path: Any) -> None:
             f"has the table schema {version!s:.20}, but viscoroll {__version__} reads {major}.x"
         )
         raise FileError(path, f"{problem}: {_REBUILD}, or install the version that wrote it")
-    for name in ("title", "grid", "comment"):
-        if name not in about:
-            raise FileError(path, f"is incomplete: attribute {name} is missing; {_REBUILD}")
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
@@ -255,8 +255,9 @@ def load(path: str | PathLike[str]) -> Dataset:
             io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False
         )
     except Exception as error:  # libraries raise errors of many kinds
-        problem = "is damaged or is not a table of viscoroll in netCDF-4"
-        raise FileError(path, f"{problem}: {_REBUILD}") from error
+        raise FileError(
+            path, f"is damaged or is not a table of viscoroll in netCDF-4: {_REBUILD}"
+        ) from error
     check_content(table, path)
     table.encoding["source"] = str(path)  # for messages, as where xarray reads a file
     return table
