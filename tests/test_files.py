@@ -34,7 +34,7 @@ def write(request):
 #: what stands at a path, and how it is told
 OBSTACLES = {
     "a directory": (Path.mkdir, "cannot be written: it is a directory"),
-    "no folder": (lambda path: path.parent.rmdir(), "No such file or directory"),
+    "no folder": (lambda path: path.parent.rmdir(), "in a folder that does not exist"),
     "a loop of links": (lambda path: path.symlink_to(path), "it is a loop of symbolic links"),
     "a pipe": (os.mkfifo, "it is not a regular file"),
     "a device": (

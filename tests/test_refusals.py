@@ -60,6 +60,11 @@ CONTACT = each(
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
         "delta and omega are both given: give one of the two": {"omega": 1.1},
         "V is a table: must be a column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
+        "the material (alpha) has several values: must be a single one": [
+            {"roller": PAPER.replace(alpha=[2.0, 3.0]), "method": "coupled"},
+            {"roller": MANY_SCENES, "method": "coupled"},
+            {"roller": THREE, "method": "coupled"},
+        ],
         "thickness/l0 = 0.04: must be at least 0.0625 in a call with several values": {
             "roller": THIN.replace(material=vr.Cover(1.0, nu=0.0, thickness=[0.04, 0.1]))
         },
@@ -91,7 +96,7 @@ ROLLS = each(
         "drive has values for 3 motions": {"torque": vr.Feedback(0.01, omega=[0.0, -0.1, 0.1])},
         "torque must be a function of t alone, but this function has the parameters (t, V, w): for "
         "feedback": {"torque": lambda t, V, w: -V},
-        "thickness = 1 (divided by l0) | leave rested out": {"roller": COVERED, "rested": True},
+        "thickness is given | leave rested out": {"roller": COVERED, "rested": True},
     },
     **ROLL,
 )
@@ -136,6 +141,7 @@ STEADY = each(
             "V": 0.1,
             "torque": vr.Feedback(0.0, V=1.0),
         },
+        "force is a function: must be a number": {"force": math.sin},
         "torque is a Feedback that varies with time: must be constant in time": {
             "torque": vr.Feedback(math.sin, V=-1.0)
         },

@@ -24,6 +24,7 @@ from calls import (
 from refusals import each, refused
 
 import viscoroll as vr
+from viscoroll.core import write_dataset
 from viscoroll.materials.checked_netcdf import material_as_dataset
 from viscoroll.materials.material_toml import read_materials
 from viscoroll.presets import read_roller
@@ -40,6 +41,13 @@ def of_grid(table):
     return vr.load_law(netcdf(table))
 
 
+def of_material(dataset):
+    write_dataset(dataset, "given.nc", sealed=True)
+    return vr.Material.from_netcdf("given.nc")
+
+
+OF_LAW = '[material]\nfile = "given.nc"\n'
+SOFT_DATA = material_as_dataset(SOFT)
 REFUSED = [
     *each(
         of_dma,
@@ -80,10 +88,10 @@ REFUSED = [
             ),
             "given.nc: is not a grid of a law: variable 'M' is missing: must be given over "
             "V": OTHER_GRID.drop_vars("M"),
-            "given.nc | unit of Q = N m2 | N/m": OTHER_GRID.assign(
+            "given.nc | attribute units of Q = N m2 | N/m": OTHER_GRID.assign(
                 Q=OTHER_GRID.Q.assign_attrs(units="N m2")
             ),
-            "unit of V = missing | m/s, or 1 of a grid without dimension": OTHER_GRID.assign_coords(
+            "units of V = missing | m/s, or 1 of a grid without": OTHER_GRID.assign_coords(
                 V=OTHER_GRID.V.drop_attrs()
             ),
             "given.nc: is not a grid of a law: V must increase strictly, over at least two "
@@ -94,7 +102,7 @@ REFUSED = [
     *each(
         None,
         {
-            "variable 'Q' is in 'N': must be in '1'": lambda: vr.tables.save(
+            "the table for x.nc: variable 'Q' has units = 'N': must be '1'": lambda: vr.tables.save(
                 grid().assign(Q=grid().Q.assign_attrs(units="N")), "x.nc"
             ),
             'columns "E\' [Pa]" and "E\' [Pa]" are both named "E\' [Pa]": rename or remove one '
@@ -123,14 +131,24 @@ REFUSED = [
             "given.nc | law schema 2, but viscoroll": lambda: vr.load_law(
                 netcdf(law_file().assign_attrs(law_schema=2))
             ),
-            "given.nc | its numbers are not those": lambda: vr.load_law(
+            "given.nc | its numbers do not have the checksum": lambda: vr.load_law(
                 netcdf(law_file().assign_attrs(sha256_of_numbers="0" * 64))
             ),
-            "given.nc | is an incomplete law file": [
+            "given.nc: is damaged or was edited: | attribute material": [
                 lambda: vr.load_law(netcdf(law_file().assign_attrs(material="not TOML"))),
-                lambda: vr.load_law(netcdf(law_file(), without="material")),
+                lambda: [
+                    netcdf(law_file().assign_attrs(material="not TOML")),
+                    of_materials(OF_LAW),
+                ],
             ],
-            "is not a table of viscoroll": lambda: vr.tables.save(
+            "attribute material is missing; write it again by vr.tables.save": [
+                lambda: vr.load_law(netcdf(law_file(), without="material")),
+                lambda: [netcdf(law_file(), without="material"), of_materials(OF_LAW)],
+            ],
+            "must have V(V), delta(delta), Q(V, delta)": lambda: of_grid(
+                OTHER_GRID.assign(Q=OTHER_GRID.Q.isel(V=0))
+            ),
+            "is not a table of viscoroll: vr.tables.build makes a grid": lambda: vr.tables.save(
                 grid().assign_attrs(viscoroll_table="other"), "x.nc"
             ),
             "given.nc: is not a material file: it is a grid, for vr.load_law and "
@@ -141,13 +159,24 @@ REFUSED = [
             "is damaged": lambda: vr.load_law(
                 netcdf(vr.tables.law(PAPER.alpha).assign(lam=("row", ["a", "b"])))
             ),
-            "not a material file": [
-                lambda: vr.Material.from_netcdf(netcdf(material_as_dataset(SOFT).drop_vars("tau"))),
-                lambda: vr.Material.from_netcdf(
-                    netcdf(material_as_dataset(SOFT).assign_attrs(given="both", schema="other"))
-                ),
+            "is incomplete: 'nu' is missing; write it again by Material.to_netcdf": lambda: (
+                of_material(SOFT_DATA.drop_vars("nu"))
+            ),
+            "is incomplete: 'T_ref' is missing": lambda: of_material(SOFT_DATA.drop_vars("T_ref")),
+            "given = 'both': must be relaxation or creep": lambda: of_material(
+                SOFT_DATA.assign_attrs(given="both")
+            ),
+            "has a wrong value: nu = 0.7: must be in (-1, 0.5]": lambda: of_material(
+                SOFT_DATA.assign(nu=0.7)
+            ),
+            "is not a material of viscoroll": lambda: of_material(
+                SOFT_DATA.assign_attrs(schema="other")
+            ),
+            "given.nc: is not a netCDF-4 (HDF5) file": [
+                lambda: vr.Material.from_netcdf(file("E = 1", "given.nc")),
+                lambda: vr.load_law(file("E = 1", "given.nc")),
             ],
-            "line 2 | law of a pair: give one material": lambda: [
+            "line 2 | law of a pair of materials: file must name": lambda: [
                 netcdf(vr.tables.law(SOFT, STEEL)),
                 read_roller(file('[material]\nfile = "given.nc"\n' + ROLLER_FILE)),
             ],
