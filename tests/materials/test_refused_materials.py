@@ -306,7 +306,7 @@ REFUSED = [
     *each(
         vr.tables.law,
         {
-            "material is of type bool": True,
+            "material = True (a truth value)": True,
             "thickness of the cylinder is given | depends on its load and radius": (
                 RUBBER_COVER,
                 STEEL,

@@ -107,7 +107,9 @@ class Material(FromPrograms):
         (:func:`.measured_data.check_celsius`).
         """
         if not isinstance(self.prony, Prony) or self.prony.shape:
-            raise ParameterError("prony", describe_value(self.prony), "one Prony series")
+            raise ParameterError(
+                "prony", describe_value(self.prony), "a Prony series of one material"
+            )
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
