@@ -141,7 +141,10 @@ STEADY = each(
             "V": 0.1,
             "torque": vr.Feedback(0.0, V=1.0),
         },
-        "force is a function: must be a number": {"force": math.sin},
+        "force varies with time: must be a number, an array or a Feedback": [
+            {"force": math.sin},
+            {"force": vr.Schedule([0.0, 1.0], [1.0, 2.0])},
+        ],
         "torque is a Feedback that varies with time: must be constant in time": {
             "torque": vr.Feedback(math.sin, V=-1.0)
         },
@@ -173,7 +176,7 @@ CYLINDERS = each(
 ) + each(
     vr.Cylinder,
     {
-        "material = 'rubber': must be a Material": {"material": "rubber"},
+        "material = 'rubber' (a text): must be a Material": {"material": "rubber"},
         "base = rigid: must be a deformable body": {"material": vr.Material.rigid()},
         "thickness of the layer on the cylinder is 20 m: must be at most R = 0.1 m": {
             "material": replace(RUBBER_COVER, thickness=20.0)

@@ -31,6 +31,7 @@ from ..core import (
     Floats,
     Integers,
     ParameterError,
+    Schedule,
     broadcast_rows,
     broadcast_shape,
     check_array,
@@ -153,8 +154,8 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     Raises ParameterError for NaN or infinite values, a feedback that changes with time, or arrays
     of gains.
     """
-    if callable(value):
-        raise described_error(name, "is a function", "a number, an array or a Feedback")
+    if callable(value) or isinstance(value, Schedule):
+        raise described_error(name, "varies with time", "a number, an array or a Feedback")
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):

@@ -355,7 +355,7 @@ _TYPE_NAMES = {
     "str": "a text",
     "bool": "true or false",
     "array": "a list",
-    "object": "a table",
+    "object": "a table { name = value, ... }",
 }
 
 
@@ -383,7 +383,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         RecursionError,
     ) as error:  # a ValueError of tomllib, or of Python for a number of 5000 digits
         advice = _advise_on_comma(Path(path), str(error))
-        raise FileError(path, f"is not TOML ({error}){advice}") from error
+        raise FileError(path, f"is not TOML: {error}{advice}") from error
     return content
 
 

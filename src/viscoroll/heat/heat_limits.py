@@ -541,9 +541,10 @@ def warming(
             rates, span, y, "DOP853", stops, rtol=_TIME_TOLERANCE, atol=_TIME_TOLERANCE
         )
         if not found.success:
-            what = f"grows too fast between t = {span[0]:g} and {span[1]:g} s"
             raise described_error(
-                "temperature", what, "bounded: reduce V or the load, or shorten t"
+                "temperature",
+                f"grows too fast between t = {span[0]:g} and {span[1]:g} s",
+                "bounded: reduce V or the load, or shorten t",
             )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])

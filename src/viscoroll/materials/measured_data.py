@@ -419,10 +419,11 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
     if shift is None:
         return 1.0
     if reference is None:
-        allowed = (
-            "given beside vertical_shift: moduli are multiplied by b_T(temperature)/b_T(its own)"
+        raise ParameterError(
+            "temperature",
+            None,
+            "given to the Material beside vertical_shift, as the temperature of its moduli",
         )
-        raise ParameterError("temperature", None, allowed)
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
     factor, unit = (check_number("b_T", b_T(at), above=0.0) for at in (temperature, reference))
     return factor / unit

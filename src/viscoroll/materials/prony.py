@@ -535,8 +535,11 @@ def _check_modes(
     shortest = each.min(axis=-1, initial=np.inf, where=present)
     wide = longest > LARGEST_TIME_RATIO * shortest
     if wide.any():
-        ends = f"ranges from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
-        raise described_error(names[1], ends, f"within a factor of {LARGEST_TIME_RATIO:g}")
+        raise described_error(
+            names[1],
+            f"ranges from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}",
+            f"within a factor of {LARGEST_TIME_RATIO:g}",
+        )
     # modes without strength are last (sort_modes); those that no material has are cut off
     return values[..., :most], each[..., :most]
 

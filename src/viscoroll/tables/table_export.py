@@ -73,9 +73,7 @@ def export(table: Dataset, path: str | PathLike[str]) -> None:
     suffix = path.suffix.lower()
     if suffix not in formats:
         kind = "law" if table_files.is_law(table) else "grid"
-        raise ParameterError(
-            "path", path, f"a name that ends in {', '.join(formats)}, as the table is a {kind}"
-        )
+        raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")
     formats[suffix](table, path)
 
 
