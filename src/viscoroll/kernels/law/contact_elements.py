@@ -534,7 +534,7 @@ def pressure_and_strain(S, B, q, p, strain):
 
 
 @kernel(allocates=True)
-def find_zones(S, B, mu, d, zone, kept, p, q, strain):
+def find_zones(S, B, mu, d, zone, p, q, strain):
     """Find the zones of stick and slip of one contact by exchange of nodes.
 
     Nodes that stick with |q| > mu p begin to slip; nodes whose slip is against q begin to stick.
@@ -543,7 +543,6 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
     B : pressure p = a - B q as a linear function of the shear, (N, N), of :func:`eliminate`.
     mu, d : floats, coefficient of friction, kappa times the creepage delta.
     zone : 0 for stick, 1 or -1 for slip at each inner node, (N - 1,); a first guess, changed.
-    kept : int, number of inner nodes from the rear whose zone is not changed.
     p, q : pressure and shear at the inner nodes, (N - 1,) each, written.
     strain : u' in the elements, (N,), written.
     Returns (whether zones were found, a bool; g of :func:`pressure_and_strain`, a float).
@@ -560,7 +559,7 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
             scale = max(scale, abs(d - strain[e]))
         worst = 0.0  # largest relative violation of Coulomb's law, and its node
         which = -1
-        for i in range(kept, n):
+        for i in range(n):
             new[i] = zone[i]
             slip = d - strain[i + 1]  # in the element ahead of the node, as in solve_zones
             wrong = 0.0
@@ -581,6 +580,6 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
         if choice > _TOGETHER:
             zone[which] = new[which]
         else:
-            for i in range(kept, n):
+            for i in range(n):
                 zone[i] = new[i]
     return False, g

@@ -154,15 +154,14 @@ def new_contact(count):
 
 
 @kernel
-def find_spots(zone, place, width, weight, spots):
+def find_spots(zone, place, spots):
     """Write the spots of a mesh, places at which it is refined, at the edges of the zones of a
     contact; return their number, an int.
 
     zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
-    width, weight : floats, of each spot: width > 0 in the parameter, and number of elements in a
-        factor of e of the distance from it (:func:`.contact_elements.make_mesh`).
-    spots : (MOST_SPOTS, 3), parameter, width and weight, written from the first row on, from the
-        rear edge to the front edge; further edges than it has rows are left out.
+    spots : (MOST_SPOTS, 3), parameter, width and weight of each
+        (:func:`.contact_elements.make_mesh`), written from the first row on, from the rear edge to
+        the front edge; further edges than it has rows are left out.
     """
     used = 0
     # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
@@ -170,8 +169,9 @@ def find_spots(zone, place, width, weight, spots):
         if zone[i] != zone[i + 1] and used < spots.shape[0]:
             # The edge counts as at the node that slips, of two that slip at the rear one.
             spots[used, 0] = place[i + 1] if zone[i] != 0.0 else place[i + 2]
-            spots[used, 1] = width
-            spots[used, 2] = weight
+            # in the parameter, of which an element of an equal mesh has 1/N
+            spots[used, 1] = WIDTH_OF_SPOT / (zone.size + 1)
+            spots[used, 2] = WEIGHT_OF_SPOT
             used += 1
     return used
 
@@ -206,8 +206,7 @@ def gather(row, contact, c, spots):
         element.
     """
     count = contact.at.size
-    # widths are in the parameter, of which an element of an equal mesh has 1/count
-    edges = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
+    edges = find_spots(contact.zone, contact.place, spots)
     used = edges
     # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
     # c pi^2 (1 - t)^2/2 behind the front edge.
@@ -257,11 +256,11 @@ def solve_contact(row, contact, c, mu, d, spots, again):
         if not solve_zones(S, B, mu, contact.zone, 0.0, contact.q):
             return SINGULAR, 0.0, True
         return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
-    good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
-    # Edges of the zones of the solution; width and weight, 1.0, are not read.  With a mesh that is
+    good, g = find_zones(S, B, mu, d, contact.zone, contact.p, contact.q, contact.strain)
+    # Edges of the zones of the solution.  With a mesh that is
     # kept (edges = 0) the result is of no use, and find_length does not wait for it.
     found = np.empty((MOST_SPOTS, 3))
-    centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
+    centred = find_spots(contact.zone, contact.place, found) == edges
     for k in range(edges):
         centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
     return SOLVED if good else NO_ZONES, g, centred
@@ -339,10 +338,9 @@ def split_powers(row, contact):
 
 
 @kernel(allocates=True)
-def write_state(row, contact, c, g, mu, d, status, out):
+def write_state(contact, c, g, mu, d, status, out):
     """Write the quantities of a solved state, except moment and work of the cylinder alone.
 
-    row : not read.
     contact : solved :class:`Contact`.
     c, g : floats, half length, and distance of the middle ahead of the axis, divided by l0.
     mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
@@ -354,7 +352,6 @@ def write_state(row, contact, c, g, mu, d, status, out):
     """
     total, moment = moments(contact.nodes, contact.p)
     traction, _ = moments(contact.nodes, contact.q)
-    slip = 0.0 if math.isinf(d) else d  # a finite d for the branch of partial slip
     out[0] = 2.0 * c
     out[1] = g / c
     out[2] = traction / (mu * total)
@@ -364,7 +361,7 @@ def write_state(row, contact, c, g, mu, d, status, out):
         out[4] = 2.0 * product(contact.nodes, contact.at, contact.q, contact.strain) / total
     else:
         # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
-        out[4] = 2.0 * (slip * traction - slip_work(contact, slip)) / total
+        out[4] = 2.0 * (d * traction - slip_work(contact, d)) / total
     out[7] = stick_length(contact)
     # The integral of negative pressure: that of inner node i counts for half of the two elements
     # beside it, which lie between the nodes i and i + 2 of the mesh.
@@ -406,7 +403,7 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
         c = math.exp(y)
         # after some meshes the last one is kept: else it could change from length to length
         status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
-        total = write_state(row, contact, c, g, mu, d, status, out)
+        total = write_state(contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
         # A load that is not above 0 counts as e times too small, so that the contact grows.
@@ -550,7 +547,7 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
         finish_state(row, contact, out[n])
         guess = length
         this = n % 2
-        found[this] = find_spots(contact.zone, contact.place, 1.0, 1.0, edges[this])
+        found[this] = find_spots(contact.zone, contact.place, edges[this])
         if 0 < n < creeps.size - 1:
             # linear in ``at``: ln of the half length (column 9), and the edges if as many as before
             ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)
