@@ -123,10 +123,14 @@ SMALL_CREEP = 0.0625
     _FREE_CYLINDER,
     #: g_c.
     _EXCESS_CYLINDER,
-    #: The factor by which M of a cover falls with Q.
+    #: The factor by which M_half_space of a cover falls with Q.
     _FACTOR,
-    #: The excess of that factor in full slip.
+    #: That of M_cylinder.
+    _CYLINDER_FACTOR,
+    #: The excess of the first in full slip.
     _FACTOR_EXCESS,
+    #: That of the second.
+    _CYLINDER_FACTOR_EXCESS,
 ) = np.arange(0, SCRATCH_SIZE, TOGETHER, dtype=np.uint64)
 #: Distance of t from the row of a position in the scratch.
 _T = np.uint64(TOGETHER)
@@ -542,13 +546,13 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon + epsilon_change, n, request)
     _write_reaction(n, position, u, state, law, law.cover_rows, request)
-    slopes_of_Q, slopes_of_M, slopes_of_bodies = asks_for_slopes(to)
-    bodies = slopes_of_bodies or max(to.M_half_space, to.M_cylinder) >= 0
-    if slopes_of_Q or slopes_of_M or bodies:
+    if max(to.M_half_space, to.M_cylinder) >= 0:
+        _write_body_moments(n, c, law, law.cover_rows, scratch, request)
+    of_Q, of_M, of_bodies = asks_for_slopes(to)
+    if of_Q or of_M or of_bodies:
         # M of a cover depends on Q, so that its slopes need those of Q.
-        of_M = slopes_of_M or slopes_of_bodies
-        slopes_of_Q = slopes_of_Q or (_is_cover(law.cover_rows) and of_M)
-        _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
+        slopes_of_Q = of_Q or _is_cover(law.cover_rows)
+        _write_slopes(n, c, of_bodies, slopes_of_Q, law, scratch, request)
 
 
 @inline_kernel
@@ -592,19 +596,50 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
 
 
 @inline_kernel
-def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
-    """Write the moments of the bodies, and the slopes of Q and of all moments, of those that are
-    requested.
+def _write_body_moments(n, c, law, cover_rows, scratch, request):
+    """Write the moments of both bodies, of those that are requested.
 
     n : int, index of the state in the columns of ``request.out``, >= 0; not checked.
     c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
-    bodies : bool, whether the moment of one body or a slope of it is requested.
-    slopes_of_Q : bool, whether a slope of Q is requested, or of a moment of a cover.
+    law : :class:`.law_record.Law` with the material of the state selected, with rows of the moments
+        of the bodies.
+    cover_rows : ``law.cover_rows``; None of half-spaces, whose moments do not depend on Q.
+    scratch : of it u, the position of u, kappa and V are read; of a cover Q, mu, and the factors
+        and excesses of :func:`_write_cover` too.
+    request : :class:`.law_record.Request`; ``out`` gets both moments, in units of P R.
+    Returns nothing.
+    """
+    u = scratch[_U + c]
+    position = _position(_POSITION, c, scratch)
+    scale = length_and_moment(position, u, law).scale
+    factor = moment_factor(position, u, scale, _state(c, scratch, request))
+    half_space, cylinder, _, _ = body_moments(position, u, law)
+    half_space *= factor
+    cylinder *= factor
+    if cover_rows is not None:  # M of a body falls by Q (factor + excess |Q|/mu)
+        Q = scratch[_Q + c]
+        used = abs(Q) / scratch[_MU + c]
+        half_space -= Q * (scratch[_FACTOR + c] + scratch[_FACTOR_EXCESS + c] * used)
+        cylinder -= Q * (
+            scratch[_CYLINDER_FACTOR + c] + scratch[_CYLINDER_FACTOR_EXCESS + c] * used
+        )
+    write_field(request.to.M_half_space, half_space, n, request)
+    write_field(request.to.M_cylinder, cylinder, n, request)
+
+
+@inline_kernel
+def _write_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
+    """Write the slopes of Q and of the moments, of those that are requested.
+
+    n : int, index of the state in the columns of ``request.out``, >= 0; not checked.
+    c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
+    bodies : bool, whether a slope of the moment of one body is requested.
+    slopes_of_Q : bool, whether slopes of Q are needed: of a cover always.
     law : :class:`.law_record.Law` with the material of the state selected; with ``bodies`` it has
         rows of the moments of the bodies.
     scratch : of it the state (kappa, mu, V, creep), u, the position of u, D and, of a cover, Q are
         read; of half-spaces Q may be absent, as it has no effect.
-    request : :class:`.law_record.Request`; ``out`` gets moments and slopes, dimensionless.
+    request : :class:`.law_record.Request`; ``out`` gets the slopes, dimensionless.
     Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are
     0.
     """
@@ -615,6 +650,10 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     functions = length_and_moment(position, u, law)
     pairs = pairs_at(position, u, law.cover_rows)
     change = traction_on_moments(pairs, functions, scratch[_Q + c], state, law.cover_rows)
+    half_space_slope = 0.0
+    cylinder_slope = 0.0
+    if bodies:
+        _, _, half_space_slope, cylinder_slope = body_moments(position, u, law)
     # 0 where no slope of Q is needed: of half-spaces they then multiply derivatives that are 0
     over_V = 0.0
     over_delta = 0.0
@@ -626,13 +665,6 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
         write_field(to.dQ_dV, over_V, n, request)
         write_field(to.dQ_ddelta, over_delta, n, request)
         write_field(to.dQ_domega, over_omega, n, request)
-    half_space_slope = 0.0
-    cylinder_slope = 0.0
-    if bodies:
-        half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
-        factor = moment_factor(position, u, functions.scale, state)
-        write_field(to.M_half_space, factor * half_space + change.half_space, n, request)
-        write_field(to.M_cylinder, factor * cylinder + change.cylinder, n, request)
     dQ = change.half_space_dQ + change.cylinder_dQ
     du = change.half_space_du + change.cylinder_du
     write_field(to.dM_ddelta, moment_slope(dQ, over_delta), n, request)
@@ -680,8 +712,8 @@ def _write_pairs(c, position, cover_rows, scratch, request):
     position : :class:`.law_functions.RowPosition` of u.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces, of which delta_0 = 0 alone is written.
-    scratch : (SCRATCH_SIZE,) doubles: u of the state is read.  Written are f and g, and where M is
-        requested f_c and g_c; :func:`_write_cover` reads them.
+    scratch : (SCRATCH_SIZE,) doubles: u of the state is read.  Written are f and g, and where a
+        moment is requested f_c and g_c; :func:`_write_cover` reads them.
     request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
@@ -693,7 +725,7 @@ def _write_pairs(c, position, cover_rows, scratch, request):
         total = total_at(position, u, cover_rows)
         scratch[_FREE + c] = total.first.value
         scratch[_EXCESS + c] = total.second.value
-        if request.to.M >= 0:
+        if _asks_for_moments(request):
             cylinder = cylinder_at(total, position, u, cover_rows)
             scratch[_FREE_CYLINDER + c] = cylinder.first.value
             scratch[_EXCESS_CYLINDER + c] = cylinder.second.value
@@ -710,14 +742,14 @@ def _write_cover(c, cover_rows, scratch, request):
     cover_rows : of any cover among those of the block: it is only asked whether it is None, of
         half-spaces, and then nothing is written; no number of it is read.
     scratch : (SCRATCH_SIZE,) doubles: kappa, mu, L, f and g of the state are read, and f_c and g_c
-        where M is requested.  2 kappa delta_0 and c are written, and where M is requested factor
-        and excess of :class:`.cover_law.Reaction`, summed over both bodies.
+        where a moment is requested.  2 kappa delta_0 and c are written, and where a moment is
+        requested the factors and excesses of :class:`.cover_law.Reaction` of both bodies.
     request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
     if cover_rows is not None:
         total = _values(scratch[_FREE + c], scratch[_EXCESS + c])
-        # of an earlier state where M is not requested: nothing below reads it then
+        # of an earlier state where no moment is requested: nothing below reads it then
         cylinder = _values(scratch[_FREE_CYLINDER + c], scratch[_EXCESS_CYLINDER + c])
         pairs = Pairs(total, cylinder)
         mu = scratch[_MU + c]
@@ -725,10 +757,21 @@ def _write_cover(c, cover_rows, scratch, request):
         scratch[_FREE_CREEP + c] = total.first.value
         # 0 for the derivatives of L, here and below: values alone are read, which do not need them
         scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
-        if request.to.M >= 0:
+        if _asks_for_moments(request):
             reaction = shear_reaction(pairs, scratch[_KAPPA + c], mu, L, 0.0, cover_rows)
-            scratch[_FACTOR + c] = reaction.half_space + reaction.cylinder
-            scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess + reaction.cylinder_excess
+            scratch[_FACTOR + c] = reaction.half_space
+            scratch[_CYLINDER_FACTOR + c] = reaction.cylinder
+            scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
+            scratch[_CYLINDER_FACTOR_EXCESS + c] = reaction.cylinder_excess
+
+
+@inline_kernel
+def _asks_for_moments(request):
+    """Return whether M, or that of a body, is requested of a :class:`.law_record.Request`, a
+    bool.
+    """
+    to = request.to
+    return max(to.M, to.M_half_space, to.M_cylinder) >= 0
 
 
 @inline_kernel
@@ -747,8 +790,8 @@ def _write_traction_on_cover(Q, n, c, cover_rows, scratch, request):
     c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
     cover_rows : of any cover among those of the block: it is only asked whether it is None, of
         half-spaces, of which nothing is written.
-    scratch : (SCRATCH_SIZE,) doubles: mu, and factor and excess of Q (:func:`_write_cover`) are
-        read, and Q is written.
+    scratch : (SCRATCH_SIZE,) doubles: mu, and the factors and excesses of Q (:func:`_write_cover`)
+        are read, and Q is written.
     request : :class:`.law_record.Request`; M in ``out``, in units of P R, is that without traction
         before.
     Returns nothing.
@@ -758,9 +801,9 @@ def _write_traction_on_cover(Q, n, c, cover_rows, scratch, request):
         scratch[_Q + c] = Q
         row = request.to.M
         if row >= 0:
-            factor = scratch[_FACTOR + c] + scratch[_FACTOR_EXCESS + c] * (
-                abs(Q) / scratch[_MU + c]
-            )
+            used = abs(Q) / scratch[_MU + c]
+            factor = scratch[_FACTOR + c] + scratch[_CYLINDER_FACTOR + c]
+            factor += (scratch[_FACTOR_EXCESS + c] + scratch[_CYLINDER_FACTOR_EXCESS + c]) * used
             request.out[np.uint64(row), np.uint64(n + request.first)] -= Q * factor
 
 
