@@ -41,8 +41,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 - Rates: the right-hand side at a State and its derivatives (:mod:`rhs`).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..numerics.intrinsics import by_value
