@@ -238,12 +238,24 @@ class FreeDecay(NamedTuple):
     torque: float
 
 
-@inline_kernel
-def _decay_on_side(sigma, work):
-    """Return (:class:`FreeDecay`, whether d lies on the side sigma, a bool) by the law of this
-    side; the formulas are those of :func:`free_decay`.
+@kernel
+def free_decay(work):
+    """Return the decay of V where nothing but resistance and feedback acts, as :class:`FreeDecay`,
+    in the limit V -> 0.
 
-    sigma: float, side of d, 1.0 or -1.0, on which the law of a table depends.
+    With a_b and a_c, the factors of Q by which shear acts back on M
+    (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage without creep force,
+    V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c) Q - M_cylinder, with
+    moments without traction and feedback f and q in proportion to V.  Q is eliminated: with a = 1 +
+    a_b, b = 1 - a_c and J = j (1 + delta_0)
+
+        (b + a J) V' = -b (M_half_space - f) - a (M_cylinder - q)
+        (b + a J) Q = J (M_half_space - f) - M_cylinder + q
+
+    Added mass of half-spaces, half of n V' in either moment, adds n to the factor of V', and n/2 to
+    J and to the factor 1 of M_cylinder - q in the second line.  A law by a table has slopes over d
+    on each side of d = 0; those of the side on which d lies are taken.
+
     work: Workspace, of the motion; its Scene and the gains of its feedback are read.
     """
     scene = work.scene
@@ -260,51 +272,29 @@ def _decay_on_side(sigma, work):
         creep_Q=L / (4.0 * scene.kappa),  # Q = 2 mu d for small d
         Q_V=0.0,
     )
-    slow = slow_law_of_table(sigma, scene.kappa, scene.mu, rows, by_value(scene.law).table)
     gains = work.drive.gains
     omega_over_V = 1.0 + delta_0
     force = gains.force_V + gains.force_omega * omega_over_V
     torque = gains.torque_V + gains.torque_omega * omega_over_V
     spin_inertia = scene.j * omega_over_V
-    on_axis = 1.0 + slow.reaction_half_space
-    on_spin = 1.0 - slow.reaction_cylinder
     n = added_inertia(0.0, scene)[0]  # 0 of covers
-    inertia = on_spin + spin_inertia * on_axis + n
-    if on_axis == 1.0 and on_spin == 1.0:  # half-spaces: the same sum, in another order
-        rate = (slow.half_space + slow.cylinder - force - torque) / inertia
-    else:
-        axis_loss = on_spin * (slow.half_space - force)
-        rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
-    Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
-    Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
-    # Q_V is Q/V at d = 0, so that Q above it means d > 0; at equality both sides serve
+    for sigma in (1.0, -1.0):
+        slow = slow_law_of_table(sigma, scene.kappa, scene.mu, rows, by_value(scene.law).table)
+        on_axis = 1.0 + slow.reaction_half_space
+        on_spin = 1.0 - slow.reaction_cylinder
+        inertia = on_spin + spin_inertia * on_axis + n
+        if on_axis == 1.0 and on_spin == 1.0:  # half-spaces: the same sum, in another order
+            rate = (slow.half_space + slow.cylinder - force - torque) / inertia
+        else:
+            axis_loss = on_spin * (slow.half_space - force)
+            rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
+        Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
+        Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
+        # Q_V is Q/V at d = 0, so that Q above it means d > 0; at equality both sides serve
+        if sigma * (Q - slow.Q_V) >= 0.0:
+            break
     creep = slow.creep_V + slow.creep_Q * Q
-    decay = FreeDecay(rate=rate, creep=creep, delta_0=delta_0, force=force, torque=torque)
-    return decay, sigma * (Q - slow.Q_V) >= 0.0
-
-
-@kernel
-def free_decay(work):
-    """Return the decay of V where nothing but resistance and feedback acts, as :class:`FreeDecay`,
-    in the limit V -> 0.
-
-    With a_b and a_c, the factors of Q by which shear acts back on M
-    (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage without creep force,
-    V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c) Q - M_cylinder, with
-    moments without traction and feedback f and q in proportion to V.  Q is eliminated: with a = 1 +
-    a_b, b = 1 - a_c and J = j (1 + delta_0)
-
-        (b + a J) V' = -b (M_half_space - f) - a (M_cylinder - q)
-        (b + a J) Q = J (M_half_space - f) - M_cylinder + q
-
-    Added mass of half-spaces, half of n V' in either moment, adds n to the factor of V', and n/2 to
-    J and to the factor 1 of M_cylinder - q in the second line.  A law by a table has
-    slopes over d on each side of d = 0; those of the side on which d lies are taken.
-
-    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
-    """
-    decay, consistent = _decay_on_side(1.0, work)
-    return decay if consistent else _decay_on_side(-1.0, work)[0]
+    return FreeDecay(rate=rate, creep=creep, delta_0=delta_0, force=force, torque=torque)
 
 
 @inline_kernel

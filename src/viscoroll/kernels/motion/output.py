@@ -321,7 +321,7 @@ def _evaluate_integrands(regime, work):
             nodes[ROW_INTEGRANDS + ROW_LENGTH * n + i] = integrands[n]
 
 
-@inline_kernel
+@kernel
 def accept_step(end, v, step, regime, step_state, work):
     """Accept a step up to a position on it: write the outputs before its end and add up the
     quadratures.
