@@ -134,7 +134,7 @@ def _spin_against_brake(load, scene):
     Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at
     most -1, as omega then grows with V, else that of the torque that is left, 0.0 for none; held, a
     bool, whether the brake holds omega at 0 (also where both torques are equal), in which case the
-    sign is to be ignored.
+    sign is 0.0.
     """
     d_zero = _d_at_zero_omega(scene)
     load = _effective_load(load, 0.0, scene)  # without the brake, whose torque is compared below
