@@ -50,8 +50,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -59,9 +57,7 @@ from ..law.cover_law import creep_turn, free_kinematics, reduced_kinematics
 from ..law.law_functions import H_over_F2, H_over_F2_secants, locate_row
 from ..numerics.intrinsics import by_value, unlikely
 from ..numerics.jit import inline_kernel, kernel
-from ..records import State
-from .collocation import ROW_OMEGA_OR_D, ROW_V
-from .drive import current_load, load_at_node
+from .drive import current_load
 from .motion_law import added_inertia, asymmetry, evaluate_moments, loaded_moments
 from .table_law import Width, free_creep_of_table, table_state, width_at
 
@@ -463,20 +459,3 @@ def current_rates(state, regime, step_state, work):
     work: Workspace, of the motion; its Scene and Drive are read.
     """
     return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
-
-
-@kernel
-def rhs_and_forces_at_node(i, regime, work):
-    """Evaluate the right-hand side and the forces that act at a node of a step.
-
-    i: int, the node, 0 ... N.
-    regime: Regime, that of the step; all fields are read.
-    work: Workspace, with V, the second unknown and the four functions of the drive
-    (:func:`.drive.store_drive`) at the node; Scene and Drive are read too.
-    Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the
-    direction of the regime, as :func:`required_forces` returns them.
-    """
-    state = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i])
-    load = load_at_node(i, regime, work)
-    rates = evaluate_rhs(state, load, regime, work.scene)
-    return rates, required_forces(state.V, rates.omega, rates, load, regime, work.scene.j)
