@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.law.contact_kernel import signed_creep, signed_traction, stick_argument
 from viscoroll.kernels.law.law_functions import length_and_moment, locate_row, moment_factor
 from viscoroll.kernels.law.law_record import Law, State
+from viscoroll.kernels.law.traction_functions import signed_creep, signed_traction, stick_argument
 from viscoroll.kernels.numerics.intrinsics import floats_at, integers_at
 from viscoroll.laws.law_table import law_table
 
@@ -58,7 +58,7 @@ def _compiled():
         u = state.kappa * abs(y[0])
         at = locate_row(u, law)
         of = length_and_moment(at, u, law)
-        D = signed_creep(of.L, 0.0, 0.0, state, law)
+        D = signed_creep(of.L, 0.0, 0.0, state, law.cover_rows)
         v = stick_argument(u, of.L, abs(D))
         Q = signed_traction(locate_row(v, law), v, u, of.L, D, state.mu, law)
         M = moment_factor(at, u, of.scale, state) * of.m

@@ -452,15 +452,11 @@ class CoupledRow:
         own = kernels.get("cylinder", next(iter(kernels.values())))
         coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = coupled_states.Row(
-            table=table,
-            own=np.ascontiguousarray(own.table),
-            instant=instant,
-            own_instant=own.instant,
+            both=BodyKernels(table, instant, local),
+            own=own._replace(table=np.ascontiguousarray(own.table)),
             coupled=coupled,
             split=len(kernels) == 2,
             cylinder="cylinder" in kernels,
-            local=local,
-            own_local=own.local,
             layer=layer,
         )
         self._full = np.zeros((2, coupled_states.COLUMNS))
