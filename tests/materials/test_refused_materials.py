@@ -118,7 +118,7 @@ REFUSED = [
             "long-time modulus is not positive": lambda: vr.Material.abaqus(
                 1e7, 0.49, [0.2], [0.1], k=[1.0]
             ),
-            "measured | a Measured": lambda: vr.Material.elastic(1e6, 0.5, measured=(1.0, 2.0)),
+            "measured | a vr.Measured": lambda: vr.Material.elastic(1e6, 0.5, measured=(1.0, 2.0)),
             "shift has several factors for one temperature: must be one factor for each "
             "temperature": lambda: vr.fit_prony(
                 [DMA[0]] * 2,

@@ -176,8 +176,9 @@ def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
     try:
         with _sealed_arrays(content) as data:
             found = read(data)
-    except Exception as error:
-        warnings.warn(f"{path}: {damaged.format(error)}", RuntimeWarning, stacklevel=3)
+    except Exception:
+        words = damaged.format("not as it was written")
+        warnings.warn(f"{path}: {words}", RuntimeWarning, stacklevel=3)
         return None
     with suppress(OSError):  # a folder that is read-only
         path.touch()
