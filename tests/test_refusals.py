@@ -60,7 +60,7 @@ CONTACT = each(
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
         "delta and omega are both given: give one of the two": {"omega": 1.1},
         "V is a table: must be a column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
-        "the material (alpha) has several values: must be a single one": [
+        "the material (alpha) has shape | must be a single one": [
             {"roller": PAPER.replace(alpha=[2.0, 3.0]), "method": "coupled"},
             {"roller": MANY_SCENES, "method": "coupled"},
             {"roller": THREE, "method": "coupled"},

@@ -93,7 +93,7 @@ REFUSED = [
             "delta = 1: must be within the table's range": (
                 lambda law: vr.law(law)([1e-3] * 2, [1e-2, 2e-2])
             ),
-            "for vr.law alone": lambda law: PAPER.replace(material=law),
+            "a grid without mu, or without full slip": lambda law: PAPER.replace(material=law),
         },
     ),
     *each(

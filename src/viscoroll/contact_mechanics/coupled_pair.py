@@ -27,7 +27,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import exp1, expi
 
-from ..core import ConvergenceError, Floats, described_error
+from ..core import ConvergenceError, Floats, shape_error
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws import layer_nodes
@@ -347,10 +347,10 @@ class CoupledPair(NamedTuple):
         Raises ParameterError for several materials.
         """
         material = scene.material
-        if np.size(scene.alpha) > 1 or (material is not None and material.shape):
-            raise described_error(
+        if np.size(scene.alpha) != 1 or (material is not None and material.shape):
+            raise shape_error(
                 "the material (alpha)",
-                "has several values",
+                np.shape(scene.alpha),
                 "a single one with method='coupled': make a call for each",
             )
         if material is None:
