@@ -550,8 +550,12 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
         )
     except ValueError as error:
         names = " and ".join(arrays)
-        sentence = f"{names} have unlike coordinates: align them first, by xarray.align"
-        raise ParameterError(names, "unlike coordinates", "aligned", sentence) from error
+        raise ParameterError(
+            names,
+            "unlike coordinates",
+            "aligned",
+            f"{names} have unlike coordinates: align them first, by xarray.align",
+        ) from error
     like = next(iter(whole.values())).drop_attrs()
     # from the last array to the first, whose coordinates take the place of later ones
     others = {

@@ -177,8 +177,9 @@ def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
         with _sealed_arrays(content) as data:
             found = read(data)
     except Exception:
-        text = f"{path}: {damaged.format('not as it was written')}"
-        warnings.warn(text, RuntimeWarning, stacklevel=3)
+        warnings.warn(
+            f"{path}: {damaged.format('not as it was written')}", RuntimeWarning, stacklevel=3
+        )
         return None
     with suppress(OSError):  # a folder that is read-only
         path.touch()
