@@ -88,7 +88,9 @@ ROLLS = each(
             "V": lambda t: float(t > 0.3),
             "t": 8.0,
         },
-        "drive has values for 3 motions": {"torque": vr.Feedback(0.01, omega=[0.0, -0.1, 0.1])},
+        "roll computes one motion, but the drive is of 3: use ensemble": {
+            "torque": vr.Feedback(0.01, omega=[0.0, -0.1, 0.1])
+        },
         "torque must be a function of t alone, but this function has the parameters (t, V, w): for "
         "feedback": {"torque": lambda t, V, w: -V},
         "thickness = 1 (divided by l0) | leave rested out": {"roller": COVERED, "rested": True},
@@ -110,7 +112,7 @@ ENSEMBLES = each(
     vr.ensemble,
     {
         "V0 or omega0 has shape (1, 2): must be a number or a vector (n,)": {"V0": [[1.0, 2.0]]},
-        "V0 = [1.0, 1.0]: must be None, or 2, the prescribed speed at t = 0": {"V": 2.0},
+        "V0 = 1: must be None, or 2, the prescribed V at t = 0": {"V": 2.0},
         "V0 (2,), omega0 (3,) do not fit": {"omega0": [1.0, 2.0, 3.0]},
         "V is empty: must be": {"V0": None, "V": []},
         "coordinates": {"V0": LABELLED, "omega0": LABELLED.assign_coords(run=["a", "c"])},
@@ -121,8 +123,13 @@ DRIVES = each(vr.Schedule, {"shapes of a Schedule = times (), values ()": (0.0, 
 IN_SI = each(
     PAPER_CYLINDER.roll,
     {
-        "omega jumps at t = 0.0934579: must be continuous, as it is a prescribed speed | "
-        "(dimensionless: times divided by 10.7 s": {"omega": vr.Schedule([1.0, 1.0], [0.0, 1.0])},
+        "omega jumps at t = 1 s: must be continuous, as it is a prescribed speed": {
+            "omega": vr.Schedule([1.0, 1.0], [0.0, 1.0])
+        },
+        "resolve = 1e-09 s: must be at least 2e-06 s: at most 500000 samples up to t = 1 s": {
+            "torque": math.sin,
+            "resolve": 1e-9,
+        },
     },
     V0=0.0,
     omega0=0.0,

@@ -102,7 +102,7 @@ REFUSED = [
                 file("omega [rad/s], E' [Pa], E'' [Pa], E' [Pa]\n1,2,3,4\n2,3,4,5\n"),
                 columns={"storage": "E' [Pa]"},
             ),
-            "dma.txt | line 2 has 2 columns": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
+            "dma.txt | line 2 has 2 cells": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
             "is the law of every alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"
             ),
@@ -255,7 +255,7 @@ REFUSED = [
                 "brake = 0.01",
                 'brake = { times = [{ distribution = "uniform" }, 0.5], values = [1.0, 2.0] }',
             ),
-            "file.toml: line 4: [start] V0 = 0.0: must be None, or 0.01, the prescribed speed "
+            "file.toml: line 4: [start] V0 = 0: must be None, or 0.01, the prescribed V "
             "at t = 0": (
                 "driven",
                 "brake = 0.01",
@@ -278,7 +278,7 @@ REFUSED = [
         measured,
         {
             "unknown key 'sigmma' | did you mean 'sigma' | line 23": ("sigma", "sigmma"),
-            "has no column 'moment' | force [N]": ("moment [N m/m]", "force [N]"),
+            "has no column 'moment'; columns are | force": ("moment [N m/m]", "force [N]"),
             "[data.columns] unknown key 'Q' | V, M, F": (
                 'M = "moment"',
                 'M = "moment", Q = "moment"',

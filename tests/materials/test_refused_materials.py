@@ -201,7 +201,7 @@ REFUSED = [
         ),
         {
             "unknown | at least one name": {"unknown": {}},
-            "unknown E | (1e+06, 2e+06) | contains the initial guess, 3e+06": {
+            "unknown E | (1e+06, 2e+06) | the value with which the search starts, 3e+06": {
                 "unknown": {"E": (1e6, 2e6)}
             },
             "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
@@ -217,7 +217,7 @@ REFUSED = [
             "run: V0 | a number: the data do not determine it": {
                 "data": [vr.Coastdown(TIMES, sigma=0.1)]
             },
-            "temperature = 60.0 | given with a shift of the material": {
+            "temperature = 60.0 | given with shift={'material': ...}": {
                 "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
             },
             "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},
@@ -254,7 +254,7 @@ REFUSED = [
     *each(
         lambda **more: vr.read_dma(file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), **more),
         {
-            "columns = 'abc': must be a dict, quantity -> heading": {"columns": "abc"},
+            "columns = 'abc' (a text): must be a dict from quantity to heading": {"columns": "abc"},
             "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
             "units | must be (frequency, moduli)": [
                 {"units": units} for units in (("MPa", "Hz"), "Hz", ("Hz", 1.0))
@@ -337,7 +337,7 @@ REFUSED = [
                 vr.DynamicModuli(*DMA),
                 5,
             ),
-            "storage and loss | given": (DMA[0], DMA[1]),
+            "storage or loss is not given": (DMA[0], DMA[1]),
         },
     ),
     *each(

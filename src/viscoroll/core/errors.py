@@ -74,9 +74,9 @@ class ParameterError(ViscorollError, ValueError):
     alpha 0.5
     """
 
-    #: Whether the sentence states dimensionless numbers, to which a call with a cylinder adds its
-    #: scales.
-    is_dimensionless = False
+    #: Sentence with a place {} for each of its dimensionless numbers, and quantity and value of
+    #: each, by which a call with a cylinder tells them in SI units; () without.
+    dimensionless: tuple[Any, ...] = ()
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name = name
@@ -101,16 +101,21 @@ _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
 )
 
 
+#: Characters of a value that a message shows: most of a line.
+_SHOWN = 60
+
+
 def describe_value(value: Any) -> str:
-    """Return a value for a message: its text in one line of at most 60 characters, and its type in
-    parentheses.
+    """Return a value for a message: its text in one line of at most 60 characters, the last three
+    "..." where it is longer, and its type in parentheses.
 
     value: what a caller gave, of any type.
     Returns a text as "'abc' (a text)", "[1, 2] (a list)", "<function ...> (a function)", or of an
     array "... (of type int64, shape (3,))"; of None, an int or a float the text alone; of other
     objects "... (of type NAME)".
     """
-    text = f"{' '.join(repr(value).split()):.60}"
+    text = " ".join(repr(value).split())
+    text = text if len(text) <= _SHOWN else f"{text:.57}..."
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
         return text
     kind = next((words for types, words in _TYPE_NAMES if isinstance(value, types)), "")
@@ -144,14 +149,6 @@ def described_error(name: str, found: str, allowed: str) -> ParameterError:
     allowed: words that follow "must be".
     """
     return ParameterError(name, found, allowed, f"{name} {found}: must be {allowed}")
-
-
-def mark_dimensionless(error: ParameterError) -> ParameterError:
-    """Mark an error whose sentence states dimensionless numbers, which a cylinder was given in SI
-    units; return it.
-    """
-    error.is_dimensionless = True
-    return error
 
 
 def shape_error(name: str, shape: tuple[int, ...], allowed: str) -> ParameterError:

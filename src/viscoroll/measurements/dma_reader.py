@@ -143,11 +143,13 @@ def read_relaxation(
         raise missing(
             table,
             "relaxation",
-            "no column was found for time, or none for relaxation modulus, or stress and strain",
+            "no column was found for the relaxation modulus, nor for both stress and strain"
+            if "time" in alike
+            else "no column was found for time",
             others,
         )
     if len(table.starts) > 1:
-        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them")
+        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them in the file")
     used = [name for name in ("time", *pair, "temperature") if name in alike]
     others |= {
         each.heading: "not needed" for name in alike.keys() - {*used} for each in alike[name]
@@ -165,7 +167,8 @@ def read_relaxation(
     elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise FileError(
             table.path,
-            f"has temperatures from {temperature.min():g} to {temperature.max():g} °C: keep one",
+            f"has temperatures from {temperature.min():g} to {temperature.max():g} °C: keep the "
+            "rows of one",
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)
@@ -462,7 +465,7 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     if n > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
         problem = (
             f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "
-            "frequency sweep"
+            "frequency sweep; give a file with several frequencies"
         )
         raise FileError(table.path, problem)
     if record.temperature is None and len(table.starts) > 1:

@@ -14,7 +14,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import FileError, Floats, ParameterError, check_names, warn_of_model
+from ..core import (
+    FileError,
+    Floats,
+    ParameterError,
+    check_names,
+    describe_value,
+    described_error,
+    warn_of_model,
+)
 from .dma_columns import BARE, OF_SHEAR, QUANTITIES, UNITS, Column, columns_of, meanings, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE
 from .text_cells import NO_UNIT, Numbers, conversion, readings
@@ -80,12 +88,13 @@ def storage_and_loss(
         # sum of those of both
         rounding = rounding * (exact["modulus"] / other) ** 2
         table.require(
-            rounding <= _ROUNDED, f"{both} do not determine the other modulus: give tan delta too"
+            rounding <= _ROUNDED,
+            f"{both} differ too little to give the other modulus: add a column of tan delta",
         )
     for name in columns.keys() - set(pair):
         values, half = columns[name]
         agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half
-        advice = "give its unit by units=, or remove one of the columns"
+        advice = f"give units={{{name!r}: UNIT}}, or remove one of these columns"
         table.require(agrees, f"{name} contradicts {both}: {advice}")
     return storage, loss
 
@@ -207,7 +216,8 @@ def understand(
     for what is no table.
     """
     if not isinstance(columns, Mapping | None):
-        raise ParameterError("columns", f"{columns!r:.60}", "a dict, quantity -> heading")
+        allowed = "a dict from quantity to heading, as {'frequency': 'f [Hz]'}"
+        raise ParameterError("columns", describe_value(columns), allowed)
     named = dict(columns or {})
     known = QUANTITIES[test]
     bare = BARE[test]
@@ -256,9 +266,9 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
         if first == "time"
         else "(frequency, moduli), as ('Hz', 'MPa')"
     )
-    allowed = f"{two}, or a dict, quantity -> unit"
+    allowed = f"{two}, or a dict from quantity to unit, as {{{first!r}: {UNITS[first]!r}}}"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
-        raise ParameterError("units", f"{units!r:.60}", allowed)
+        raise ParameterError("units", describe_value(units), allowed)
     # each of the two is for all quantities that are converted to the same unit
     of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
     pairs = (
@@ -271,9 +281,7 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
         try:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
-            raise ParameterError(
-                "units", f"{units!r:.60}", f"{allowed}; {unit!r} is not a unit of {name}"
-            ) from error
+            raise described_error("units", f"has {unit!r} for {name}", allowed) from error
     return (pairs, {}) if by_name else ({}, pairs)
 
 
@@ -358,7 +366,7 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
         alike = [column for column in taken if UNITS[column.name] == unit]
         without = [column for column in alike if not column.stated]
         if without and len(without) < len(alike):
-            advice = f"give units={{{without[0].name!r}: ...}}"
+            advice = f"give units={{{without[0].name!r}: UNIT}}"
             raise FileError(
                 table.path, f"column {without[0].heading!r} has no unit, but others do: {advice}"
             )
@@ -387,7 +395,7 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
     problem = f"an earlier row has the same {name} and another modulus"
-    advice = "rows at several temperatures need a column of temperature; keep one strain"
+    advice = "for several temperatures add a column of temperature; of several strains keep one"
     table.require(holds, f"{problem}: {advice}")
     if change.max(initial=0.0) > _SCATTER:
         text = f"rows of one {name} have moduli that differ by {np.expm1(change.max()):.0%}"
@@ -433,8 +441,8 @@ def temperatures_of_lines(table: Table) -> Floats | None:
         values = {*lines.get(start, {}).values()}
         if len(values) != 1 or np.isnan([*values]).any():
             problem = (
-                "the lines above it do not state one temperature, as 'Temperature 20 °C', "
-                "of the rows below"
+                "write one temperature of the rows from here on above this line, as 'Temperature "
+                "20 °C'"
             )
             raise FileError(table.path, f"line {numbers[start]}: {problem}")
         temperature[start:] = values.pop()  # blocks below overwrite theirs

@@ -248,7 +248,7 @@ def _executor(
             client = stack.enter_context(_client(distributed, cluster, threads))
             workers = sum(client.nthreads().values())
             if not workers:
-                raise FileError(cluster, "this cluster has no workers")
+                raise FileError(cluster, "this cluster has no workers: start some by `dask worker`")
             # not pure: equal calls are evaluated again, since a block may have been lost on disk
             with client.get_executor(pure=False, retries=_RETRIES) as pool:
                 yield pool, workers, client.scatter(store, broadcast=True)
