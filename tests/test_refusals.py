@@ -88,7 +88,7 @@ ROLLS = each(
             "V": lambda t: float(t > 0.3),
             "t": 8.0,
         },
-        "roll computes one motion, but the drive is of 3: use ensemble": {
+        "roll computes one motion, but a load or a gain has shape (3,): use ensemble": {
             "torque": vr.Feedback(0.01, omega=[0.0, -0.1, 0.1])
         },
         "torque must be a function of t alone, but this function has the parameters (t, V, w): for "

@@ -27,7 +27,6 @@ from .core import (
     check_array,
     check_bool,
     check_choice,
-    described_error,
     exactly_one_error,
     format_value,
     read_only,
@@ -37,12 +36,13 @@ from .core import (
 )
 from .laws import LawTable
 from .materials import (
-    Bodies,
     Cover,
     Material,
     Pair,
     Plane,
     Prony,
+    contact_length,
+    describe_body,
     effective_modulus,
     refuse_short_retardation,
 )
@@ -91,13 +91,11 @@ class Methods(Roller):
 class _PublicFunction:
     """A public function of the package as a method, imported at its first use: a contact imports no
     motions and no heat.
+
+    name : public name of a function whose first argument is a roller.
     """
 
     def __init__(self, name: str) -> None:
-        """Keep the name.
-
-        name: public name of a function whose first argument is a roller.
-        """
         self.name = name
 
     def __get__(self, roller: Methods | None, owner: type[Methods]) -> Any:
@@ -112,21 +110,12 @@ class _PublicFunction:
         return function.__get__(roller, owner)
 
 
-for _name in (
-    "contact",
-    "stress",
-    "steady",
-    "resistance_extrema",
-    "law",
-    "roll",
-    "ensemble",
-    "validity",
-    "temperature",
-    "warming",
-    "heat_limit",
-    "turning_points",
-    "pair_temperatures",
-):
+#: names of these functions
+_FUNCTIONS = (
+    "contact stress steady resistance_extrema law roll ensemble validity temperature warming "
+    "heat_limit turning_points pair_temperatures"
+)
+for _name in _FUNCTIONS.split():
     setattr(Methods, _name, _PublicFunction(_name))
 
 
@@ -175,8 +164,6 @@ class Scene(Methods, Parameters):
 
 # --- A roller in SI units ---
 
-#: Largest relative difference of two thicknesses divided by l0 that count as the same.
-_SAME_THICKNESS = 1e-9
 #: Names of the parameters of the paper's material.
 _SLS = ("E", "nu", "T_epsilon", "T_sigma")
 #: Names of the fields that are numbers.
@@ -280,43 +267,15 @@ class Cylinder(Methods):
 
         They become floats or read-only arrays in SI units.
 
-        R: radius, m, > 0.
-        m: mass per length, kg/m, > 0.
-        E: long-time Young's modulus of both bodies, Pa, > 0; None with ``material``.
-        nu: Poisson's ratio, in (-1, 0.5]; None with ``material``.
-        T_epsilon, T_sigma: retardation and relaxation time, s, > 0, T_epsilon >= T_sigma; None with
-        ``material``.
-        mu: coefficient of friction, > 0.
-        j: moment of inertia divided by m R^2, > 0.
-        g: acceleration of gravity, m/s^2, > 0.
-        plane: "strain" or "stress".
-        material: :class:`Material` of the cylinder, or a :class:`LawTable` of one, in place of E to
-        T_sigma.
-        base: :class:`Material` of the half-space; None: that of the cylinder, or of the law.
-        load: force that presses the cylinder on the base, N/m, > 0; None: the weight m g.
         pressed: the load by its name as a field, for :func:`dataclasses.replace`; not used beside
-        ``load``.
-        coupled: whether states with traction are those of the coupled solution; None: where shear
-        acts on pressure.
+            ``load``.  All others are parameters of the class.
         Raises ParameterError as the class says.
         """
         values = vars(self)  # by it, as the class is frozen
-        values.update(
-            R=R,
-            m=m,
-            E=E,
-            nu=nu,
-            T_epsilon=T_epsilon,
-            T_sigma=T_sigma,
-            mu=mu,
-            j=j,
-            g=g,
-            plane=plane,
-            material=material,
-            base=base,
-            pressed=pressed if load is None else load,
-            coupled=coupled if coupled is None else check_bool("coupled", coupled),
-        )
+        values.update(R=R, m=m, E=E, nu=nu, T_epsilon=T_epsilon, T_sigma=T_sigma, mu=mu, j=j, g=g)
+        values.update(plane=plane, material=material, base=base)
+        values["pressed"] = pressed if load is None else load
+        values["coupled"] = coupled if coupled is None else check_bool("coupled", coupled)
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
@@ -331,9 +290,8 @@ class Cylinder(Methods):
         for name in numbers:
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
             called = "load" if name == "pressed" else name
-            values[name] = read_only(
-                check_array(called, values[name], unit=SI, above=low, high=high)
-            )
+            array = check_array(called, values[name], unit=SI, above=low, high=high)
+            values[name] = read_only(array)
         broadcast_shape(**{name: values[name] for name in numbers})
         check_choice("plane", plane, "strain", "stress")
         if material is None:
@@ -341,24 +299,8 @@ class Cylinder(Methods):
                 raise shape_error("T_epsilon", self.T_epsilon.shape, "a number or a vector (n,)")
             refuse_short_retardation(self.T_epsilon, self.T_sigma)
         if material is not None or base is not None:
-            self._refuse_thick_layer(
-                self.pair.cylinder.thickness
-            )  # the pair refuses what the materials do not allow
-
-    def _refuse_thick_layer(self, thickness: Any) -> None:
-        """Raise ParameterError where a layer on the cylinder is thicker than R, as one whose
-        thickness is in mm.
-
-        thickness: of the layer, m, a number or (n,), which may be equal to R; None: the cylinder
-        has none.
-        Raises ParameterError also where its shape does not broadcast with that of R.
-        """
-        if thickness is None:
-            return
-        broadcast_shape(thickness=thickness, R=self.R)
-        if (np.asarray(thickness) > self.R).any():
-            found = f"of the layer on the cylinder is {format_value(thickness)} m"
-            raise described_error("thickness", found, f"at most R = {format_value(self.R)} m")
+            # the pair refuses what the materials do not allow
+            self.pair.refuse_thick_layer(self.R)
 
     @property
     def _sls_parameters(self) -> bool:
@@ -377,22 +319,10 @@ class Cylinder(Methods):
         :class:`Material`; and for arrays among E to T_sigma, of which no Material can be made.
         """
         law = self.material
-        if not isinstance(law, LawTable):
-            sls = {name: getattr(self, name) for name in _SLS}
-            return Pair(Material.sls(**sls) if law is None else law, self.base, self.plane)
-        if law.pair is None:
-            raise described_error(
-                "material", "is a dimensionless law", "the law of a Material, in SI units"
-            )
-        if self.base is not None:
-            raise described_error(
-                "base", "is given", "left out: the law already contains both bodies"
-            )
-        if self.plane != law.pair.plane and not law.pair.like:
-            raise ParameterError(
-                "plane", repr(self.plane), f"{law.pair.plane!r}, for which the law was computed"
-            )
-        return Pair(law.pair.cylinder, law.pair.base, self.plane)
+        if isinstance(law, LawTable):
+            return law.pair_with(self.base, self.plane)
+        sls = {name: getattr(self, name) for name in _SLS}
+        return Pair(Material.sls(**sls) if law is None else law, self.base, self.plane)
 
     @property
     def T_ref(self) -> float:
@@ -401,11 +331,8 @@ class Cylinder(Methods):
         """
         if self.T_epsilon is None or not self._sls_parameters:
             return self.pair.T_ref
-        return (
-            float(np.max(self.T_epsilon, initial=0.0))
-            if np.ndim(self.T_epsilon)
-            else self.T_epsilon
-        )
+        several = np.ndim(self.T_epsilon)
+        return float(np.max(self.T_epsilon, initial=0.0)) if several else self.T_epsilon
 
     def replace(self, **changes: Any) -> Cylinder:
         """Return a copy of the cylinder with some parameters changed.
@@ -435,10 +362,8 @@ class Cylinder(Methods):
         >>> vr.presets.RUBBER_CYLINDER.replace(mu=0.4, load=500.0).load
         500.0
         """
-        values = {
-            name: getattr(self, name)
-            for name in (*_NUMBERS, "plane", "material", "base", "coupled")
-        }
+        names = (*_NUMBERS, "plane", "material", "base", "coupled")
+        values = {name: getattr(self, name) for name in names}
         # the load as it was given: None where it is the weight, which follows the new m and g
         values["load"] = values.pop("pressed")
         if changes.get("material") is not None:
@@ -500,12 +425,10 @@ class Cylinder(Methods):
             for name, value in values.items()
         ]
         if self.material is not None:
-            rows.append(SummaryRow("material", _describe_body(self.material)))
+            rows.append(SummaryRow("material", describe_body(self.material)))
         if self.base is not None or isinstance(self.material, Material):
             same = "of the same material as the cylinder"
-            rows.append(
-                SummaryRow("base", same if self.base is None else _describe_body(self.base))
-            )
+            rows.append(SummaryRow("base", describe_body(self.base) if self.base else same))
         return "Cylinder, SI units, per m of length", rows
 
     __repr__ = Result.__repr__
@@ -523,15 +446,12 @@ class Cylinder(Methods):
         """Contact modulus E' of long times, Pa, a number or (n,), of which l0 = sqrt(32 R P/E')
         (Sect. 3.1 of the paper).
 
-        Where both bodies are of one material, E' is pi E/(1 - nu^2) in plane strain and pi E in
-        plane stress.  Of two materials, with E'_1 and E'_2 by the same formula, it is their
-        harmonic mean 2/(1/E'_1 + 1/E'_2), thus 2 E'_1 on a rigid base.
+        Of one material it is pi E/(1 - nu^2), in plane stress pi E; of two their harmonic
+        mean 2/(1/E'_1 + 1/E'_2), thus 2 E'_1 on a rigid base.
         """
-        return (
-            effective_modulus(self.E, self.nu, self.plane)
-            if self._sls_parameters
-            else self.pair.E_prime
-        )
+        if not self._sls_parameters:
+            return self.pair.E_prime
+        return effective_modulus(self.E, self.nu, self.plane)
 
     @property
     def l0(self) -> Any:
@@ -578,24 +498,14 @@ class Cylinder(Methods):
 
     @cached_property
     def _scene(self) -> Scene:
-        """The dimensionless :class:`viscoroll.Scene`, made at first use and kept.
+        """The result of :meth:`scene`, made at first use and kept; errors as there.
 
-        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  The law of the scene is
-        one of four:
-
-        - a given law (:class:`LawTable`) as it is;
-        - by E, nu, T_epsilon and T_sigma the number alpha = T_epsilon/T_sigma, (n,) where T_sigma
-          is an array; where T_epsilon is an array, times differ relative to T_ref too, and the law
-          is a creep series of one mode, J = 1 - T_sigma/T_epsilon and T = T_epsilon/T_ref, for each
-          cylinder;
-        - by materials of half-spaces the series of their sum, :class:`Prony` or :class:`Bodies`;
-        - by materials of which one is a layer a :class:`Cover`.
-
-        Raises ParameterError as :meth:`scene` states.
+        Where T_epsilon is an array, times differ relative to T_ref too, and the law is a creep
+        series of one mode, J = 1 - T_sigma/T_epsilon and T = T_epsilon/T_ref, for each cylinder.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and isinstance(law.material, Cover):
-            self._refuse_other_load(law)
+            self.pair.refuse_other_cover(law.material, self.l0)
         if self._sls_parameters:
             # alpha = T_epsilon/T_sigma; one out of range is refused by the scene
             slow, fast = (np.asarray(T, np.float64) for T in (self.T_epsilon, self.T_sigma))
@@ -610,7 +520,8 @@ class Cylinder(Methods):
                 )
         if law is None:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
-            self._refuse_coupled_ratios(law)
+            if self.coupled is not False:
+                self.pair.refuse_coupled_ratios(law, DUNDURS_LIMIT)
         scene = scene_of(
             self.R,
             self.m,
@@ -622,34 +533,6 @@ class Cylinder(Methods):
             j=self.j,
         )
         return scene.replace(coupled=self.coupled)
-
-    def _refuse_coupled_ratios(self, law: Prony | Bodies | Cover) -> None:
-        """Raise ParameterError where half-spaces with an array of nu need the coupled solution.
-
-        law: of the bodies; :class:`Bodies` have no Poisson's ratios where one of them is an array.
-        Returns nothing for bodies whose Dundurs' constants are at most 0.05, and where ``coupled``
-        is False.
-        """
-        if self.coupled is False or type(law) is not Bodies or law.poisson is not None:
-            return
-        if self.pair.most_coupled > DUNDURS_LIMIT:
-            found = "is an array, and would need a table of the coupled solution for each value"
-            raise described_error("nu", found, "one number; or coupled=False, for the fast law")
-
-    def _refuse_other_load(self, law: LawTable) -> None:
-        """Raise ParameterError where the law of a layer is that of another load or radius, and for
-        several cylinders.
-
-        law: :class:`LawTable` of a layer; it holds for one thickness divided by l0, and l0 follows
-            from load and R.  Thicknesses divided by l0 that agree to 1e-9, relative, count as the
-            same.
-        """
-        cover: Any = law.material
-        own = self.pair.cover(self.l0)
-        if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"is the law of a layer with thickness/l0 = {cover.thickness:.6g}"
-            allowed = f"the law for {format_value(own.thickness)}, which follows from load and R"
-            raise described_error("material", found, allowed)
 
     @cached_property
     def body_data(self) -> BodyData:
@@ -679,41 +562,9 @@ class Cylinder(Methods):
         l0.
         """
         rates = self.body_data.measured_rates
-        return (
-            {}
-            if rates is None or np.ndim(self.l0)
-            else {MEASURED: [rate * self.l0 for rate in rates]}
-        )
-
-
-def _describe_body(body: Any) -> str:
-    """Return a body in a few words for a printed report.
-
-    body: :class:`Material` or :class:`LawTable`.
-    Returns, of a Material, its name, "rigid", or modulus, Poisson's ratio and number of modes, with
-    the thickness of a layer; of a LawTable its ``repr``.
-    """
-    if not isinstance(body, Material):
-        return repr(body)
-    modes = f"{body.prony.E.size} mode{'s' * (body.prony.E.size != 1)}"
-    text = body.name or (
-        "rigid" if body.is_rigid else f"E = {body.E:g} Pa, nu = {body.nu:g}, {modes}"
-    )
-    return text if body.thickness is None else f"{text}, {body.thickness:g} m thick"
-
-
-def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
-    """Return the contact length at rest of half-spaces, l0 = sqrt(32 R P/E') of Sect. 3.1 of the
-    paper.
-
-    R: radius, m, > 0.
-    load: force per length P that presses the cylinder on the base, N/m, > 0.
-    E_prime: contact modulus E' (:attr:`Cylinder.E_prime`; of one material in plane strain pi E/(1 -
-    nu^2)), Pa, > 0.
-    Returns l0, m, in the broadcast shape of the arguments, which are numbers of numpy or arrays and
-    are not checked.
-    """
-    return np.sqrt(32.0 * R * load / E_prime)
+        if rates is None or np.ndim(self.l0):
+            return {}
+        return {MEASURED: [rate * self.l0 for rate in rates]}
 
 
 def scene_of(
@@ -725,17 +576,12 @@ def scene_of(
     :class:`.run_rollers.Rollers` calls it with an array for ``T_ref``, a unit of time for each
     cylinder.
 
-    R: radius, m.
-    m: mass per length, kg/m.
-    load: force per length P that presses the cylinder on the base, N/m.
-    E_prime: contact modulus E' (:attr:`Cylinder.E_prime`; of one material in plane strain pi E/(1 -
-    nu^2)), Pa.
+    R, m, load, E_prime: radius, m, mass and load per length, kg/m and N/m, and contact modulus, Pa.
     T_ref: unit of time, s, a number or (n,).
     law: alpha, a float or an array (n,), no int, or a material of a scene (series, bodies, cover or
         :class:`LawTable`), with times divided by ``T_ref``.
     mu, j: coefficient of friction, and moment of inertia divided by m R^2, dimensionless.
-    Returns the dimensionless :class:`viscoroll.Scene`, whose kappa is R/l0 with l0 = sqrt(32 R
-    P/E'), and whose gamma is P T_ref^2/(m R).
+    Returns the :class:`Scene`, whose kappa is R/l0 and whose gamma is P T_ref^2/(m R).
     Raises ParameterError, by the names of the scene's parameters, where these are out of range or
     overflow, or their shapes do not broadcast; ValueError of numpy where those of R, load and
     E_prime, or of R, m, load and T_ref, do not.

@@ -14,13 +14,8 @@ from refusals import refused
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from viscoroll.contact_mechanics.coupled_pair import (
-    CoupledBody,
-    CoupledPair,
-    CoupledRow,
-    layer_transforms,
-    transforms,
-)
+from viscoroll.contact_mechanics.coupled_pair import CoupledBody, CoupledPair, CoupledRow
+from viscoroll.contact_mechanics.stress import layer_transforms, transforms
 
 SERIES = {
     "elastic": vr.Prony.elastic(),

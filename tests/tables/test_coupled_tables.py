@@ -71,7 +71,12 @@ def test_slopes_are_those_of_the_law(scene):
     found = law(V, omega, slopes=True)
     over_V = (law(V + step, omega).Q - law(V - step, omega).Q) / (2.0 * step)
     over_omega = (law(V, omega + step).M - law(V, omega - step).M) / (2.0 * step)
-    for slope, exact in ((found.dQ_dV, over_V), (found.dM_half_space_domega, over_omega)):
+    alone = scene.contact(V, omega=omega, fields="dM_half_space_domega").dM_half_space_domega
+    for slope, exact in (
+        (found.dQ_dV, over_V),
+        (found.dM_half_space_domega, over_omega),
+        (alone, over_omega),
+    ):
         assert close(slope, exact, tol.TABLE_SLOPE, scale=1.0 + 1.0 / V)
 
 

@@ -58,7 +58,7 @@ def _compiled():
         u = state.kappa * abs(y[0])
         at = locate_row(u, law)
         of = length_and_moment(at, u, law)
-        D = signed_creep(of.L, 0.0, 0.0, state, law)
+        D = signed_creep(of.L, 0.0, 0.0, state, law.cover_rows)
         v = stick_argument(u, of.L, abs(D))
         Q = signed_traction(locate_row(v, law), v, u, of.L, D, state.mu, law)
         M = moment_factor(at, u, of.scale, state) * of.m

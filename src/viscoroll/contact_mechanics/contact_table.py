@@ -64,8 +64,6 @@ SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 #: ``slopes=True``.
 SLOPES_OF_COVERS = ("dM_ddelta", "dM_domega", "dM_half_space_domega", "dM_cylinder_domega")
 _ALL_SLOPES = SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS
-#: Slopes that ``table_loop`` writes only beside a slope of Q or of M of both bodies.
-_BESIDE_OTHERS = frozenset([*SLOPES_OF_BODIES, "dM_half_space_domega", "dM_cylinder_domega"])
 #: Added mass of slow speed changes.
 UNSTEADY = "N"
 #: Friction reserve 1 - |Q|/mu.
@@ -373,9 +371,6 @@ def evaluate_law(
     loop, states = _kernel(direct)
     record: Any = material.record if isinstance(material, LawTable) else None
     coupled = record is not None and record.table is not None
-    asked = len(names)
-    if coupled and not _BESIDE_OTHERS.isdisjoint(names) and "dM_dV" not in names:
-        names = (*names, "dM_dV")
     rows = kernel_rows(names)
     out = np.empty((len(names), count))
 
@@ -434,7 +429,7 @@ def evaluate_law(
         numbers = broadcast_rows(arrays, shape)
         numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)
         evaluate_block(0, count, *numbers)
-        return out[:asked]
+        return out
     readers = [block_reader(np.asarray(array), shape) for array in arrays]
     block = _BLOCK_OF_MATERIALS if isinstance(material, Prony | Bodies) else _BLOCK
     run_blocks(
@@ -442,7 +437,7 @@ def evaluate_law(
         count,
         block,
     )
-    return out[:asked]
+    return out
 
 
 @lru_cache(maxsize=2)

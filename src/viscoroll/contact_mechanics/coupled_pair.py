@@ -30,8 +30,8 @@ from scipy.special import exp1, expi
 from ..core import ConvergenceError, Floats, ParameterError
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
-from ..laws import half_line_rule, layer_excess, layer_nodes, local_coupling
-from ..materials import Bodies, series_of_alpha
+from ..laws import layer_nodes
+from ..materials import Bodies, local_coupling, series_of_alpha
 
 # --- Kernels of the boundary elements at one speed ---
 
@@ -50,11 +50,6 @@ _SCALES = np.geomspace(1e-7, 1.0, 200)
 #: growth d ln J/d ln x of the compliance over distance x from the front edge from which on pressure
 #: gathers there; the pressure of half-spaces grows like the distance to the power of 1/2 less it
 _GROWTH = 0.4
-#: points of Gauss's rule in an element
-_GAUSS = 5
-#: first, last and step of s, with half length times wave number ln(1 + e^s): the transform of the
-#: pressure, squared, falls like the third power
-_WAVES = -25.0, 80.0, 0.12
 
 
 @cache
@@ -160,7 +155,7 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     return k, phases, excess / (np.pi * thickness)
 
 
-def _compliance(instant: float, modes: list[tuple[float, float]], k: Floats) -> Any:
+def wave_compliance(instant: float, modes: list[tuple[float, float]], k: Floats) -> Any:
     """Return the compliance under waves of the wave numbers ``k``, complex, (n,), of a body whose
     compliance at rest is 1; ``instant``, ``modes``: as of :meth:`CoupledBody.at_speed`.
     """
@@ -181,7 +176,7 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
     :func:`_fit`, without terms linear in x.
     """
     k, phases, excess = _phases(nu, thickness)
-    compliance = _compliance(instant, modes, k)
+    compliance = wave_compliance(instant, modes, k)
     # columns 0 to 2 are those of L - 1, T - 1 and C with the real part of the compliance, 3 to 5
     # with the imaginary part; the coupling, without -i sgn(k), takes them the other way round
     weights = np.concatenate([excess * compliance.real, excess * compliance.imag]).T
@@ -272,68 +267,6 @@ def edge_layer(bodies: Any, u: float) -> float:
     return float(steep[0]) if steep.size else math.inf
 
 
-def _element_points(nodes: Floats) -> tuple[Floats, Floats]:
-    """Return points and weights of Gauss's rule in each element between ascending nodes, (m,)
-    each, in the unit of ``nodes``, (n,).
-    """
-    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    halves = 0.5 * np.diff(nodes)[:, None]
-    return (nodes[:-1, None] + halves * (1.0 + points)).ravel(), (halves * weights).ravel()
-
-
-def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
-    """Return the Fourier transform int f(x) exp(-i k x) dx of a function f that is linear between
-    nodes.
-
-    nodes, values: ascending x divided by l0, and f there, (n,) each.
-    k: wave numbers times l0, (m,).
-    Returns complex numbers, (m,), in the unit of f, by Gauss's rule in each element.
-    """
-    x, weights = _element_points(nodes)
-    return np.exp(-1j * np.multiply.outer(k, x)) @ (np.interp(x, nodes, values) * weights)
-
-
-def layer_transforms(nu: float, u: Floats) -> Floats:
-    """Return the transforms L, T and C (module) of a bonded layer.
-
-    nu: Poisson's ratio.
-    u: wave numbers times the thickness, > 0, (n,).
-    Returns L and T divided by those of a half-space, and C, dimensionless, (3, n).
-    """
-    L, shear, C = layer_excess(nu, u)
-    return np.array([1.0 + L, 1.0 + L + shear, local_coupling(nu) + C])
-
-
-def depth(bodies: Any, u: float, profile: Any) -> float:
-    """Return the approach of two bodies, each rigid or a layer on a rigid body.
-
-    It is the mean, weighted by the pressure, of the displacement of both surfaces (by Parseval's
-    theorem) plus that of the cylinder's profile x^2/2.
-
-    bodies: a :class:`CoupledBody` for each body that deforms, of finite thickness.
-    u: kappa |V|, dimensionless, >= 0 or infinite.
-    profile: :class:`CoupledProfile`, tractions of the state, of which nodes, shift, p and q are
-        read; x is counted from the axis, nodes + shift.
-    Returns the approach divided by l0^2/R, a float, positive where the bodies have come closer than
-    at their first touch.
-    """
-    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
-    k, weights = half_line_rule(_WAVES[2], 1.0 / half, _WAVES[:2])
-    p = transforms(profile.nodes, profile.p, k)
-    q = transforms(profile.nodes, profile.q, k)
-    total = 0.0
-    for body in bodies:
-        instant, modes = body.at_speed(u)
-        compliance = _compliance(instant, modes, k)
-        L, _, C = layer_transforms(body.nu, k * body.thickness)
-        work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
-        total += body.share * float(weights @ work.real) / np.pi
-    x, weights = _element_points(profile.nodes)
-    pressure = np.interp(x, profile.nodes, profile.p) * weights
-    square = pressure @ (x + profile.shift) ** 2
-    return float((total + 0.5 * square) / pressure.sum())
-
-
 # --- Steady rolling with pressure and shear solved together ---
 
 #: Elements of a state.
@@ -346,8 +279,6 @@ _FREE_CREEP_ERROR = 1e-9
 _UNLAYERED = 1e-3
 #: Coupling that counts as rounding, divided by the largest kernel.
 _ROUNDING = 1e-14
-
-
 #: What each status of the kernels says.
 _REASONS = {
     1: "no zones of stick and slip satisfy Coulomb's law",
@@ -517,20 +448,15 @@ class CoupledRow:
         table = np.ascontiguousarray(sum(each.table for each in kernels.values()))
         instant = math.fsum(each.instant for each in kernels.values())
         local = np.concatenate([each.local for each in kernels.values()])
-        # kernels of the cylinder alone, by which M and work are divided; of a single body they are
-        # its
+        # kernels by which M and work are divided: of the cylinder, or of the single body
         own = kernels.get("cylinder", next(iter(kernels.values())))
         coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = coupled_states.Row(
-            table=table,
-            own=np.ascontiguousarray(own.table),
-            instant=instant,
-            own_instant=own.instant,
+            both=BodyKernels(table, instant, local),
+            own=own._replace(table=np.ascontiguousarray(own.table)),
             coupled=coupled,
             split=len(kernels) == 2,
             cylinder="cylinder" in kernels,
-            local=local,
-            own_local=own.local,
             layer=layer,
         )
         self._full = np.zeros((2, coupled_states.COLUMNS))
@@ -542,7 +468,6 @@ class CoupledRow:
         ]
         # kappa delta at the onset of full slip of negative and of positive sign
         self._ends = [onset for onset, _ in ends]
-
         # guesses that are the same for bodies that are swapped: the half length, column 9, and
         # d ln(load)/d ln(half length), the second of each of the ends
         self._length = 0.5 * float(self._full[0, 9] + self._full[1, 9])
@@ -666,8 +591,6 @@ def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
     """
     for code, creep in zip(np.asarray(status, int), creeps, strict=True):
         if code:
-            state = (
-                f"kappa |V| = {u:g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = {creep:g}"
-            )
-            problem = f"contact by method 'coupled': {_REASONS[int(code)]} at {state}"
+            problem = f"contact by method 'coupled': {_REASONS[int(code)]} at kappa |V| = {u:g} "
+            problem += f"(V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = {creep:g}"
             raise ConvergenceError(f"{problem}; please report it")

@@ -74,13 +74,7 @@ class Roller:
         raise NotImplementedError
 
     def on_slope(self, slope: Any) -> Self:
-        """Return the same roller on a slope, under the load P cos(slope), as a new object;
-        subclasses implement it.
-
-        slope: angle, rad, a number or an array, which broadcasts with the parameters.
-        Raises ParameterError for a slope outside (-pi/2, pi/2), and for shapes that do not
-        broadcast.
-        """
+        """Return the same roller on a slope, rad, under the load P cos(slope), as a new object."""
         raise NotImplementedError
 
     def replace(self, **changes: Any) -> Self:
@@ -151,8 +145,7 @@ class Parameters(Roller):
     The unit of time, T_ref, is T_epsilon where alpha is given, else the time in units of which the
     material counts.
 
-    alpha : T_epsilon/T_sigma, in [1, :data:`HIGHEST_ALPHA`]; of a material its alpha, which the
-    class sets.
+    alpha : T_epsilon/T_sigma, in [1, :data:`HIGHEST_ALPHA`]; that of a material is set.
     kappa : slenderness R/l0, > 0.
     mu : coefficient of friction, > 0.
     gamma : P T_ref^2/(m R), > 0; None where the roller does not move.
@@ -489,13 +482,10 @@ def refuse_other_friction(law: LawTable, mu: Any) -> None:
     law: the law; one without a table holds for every mu.
     mu: coefficient of friction of the scene, a number or an array.
     """
-    if (
-        law.coupled is not None
-        and np.abs(np.asarray(mu) / law.coupled.mu - 1.0).max(initial=0.0) > _SAME_MU
-    ):
-        raise ParameterError(
-            "mu", format_value(mu), f"{law.coupled.mu!r}, for which the table was computed"
-        )
+    table = law.coupled
+    if table is not None and np.abs(np.asarray(mu) / table.mu - 1.0).max(initial=0.0) > _SAME_MU:
+        allowed = f"{table.mu!r}, for which the table was computed"
+        raise ParameterError("mu", format_value(mu), allowed)
 
 
 def scale_of(roller: Any) -> Scale:
@@ -597,10 +587,8 @@ def refuse_arrays(
 
 
 def _refuse_ratio(mu: Floats, kappa: Floats) -> None:
-    """Raise ParameterError for the first mu/kappa outside :data:`RATIO_RANGE`; if there is none, do
-    nothing.
+    """Raise ParameterError for the first mu/kappa outside :data:`RATIO_RANGE`, if there is one.
 
-    mu/kappa is the unit of delta_star, which would leave the range of doubles.
     mu, kappa: coefficient of friction and slenderness, > 0, arrays that broadcast.
     """
     low, high = RATIO_RANGE

@@ -409,7 +409,7 @@ def balance(
     Returns (creepages delta, dimensionless; the part of each load that the friction cannot balance,
     0 where it suffices), (n,) each.
     """
-    from ..kernels.law.spline_law import balance_loop
+    from ..kernels.law.coupled_splines import balance_loop
 
     kappa, mu = (
         np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=float) for each in contacts[1:]

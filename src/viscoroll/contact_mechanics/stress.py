@@ -29,14 +29,20 @@ from ..core import (
     run_blocks,
     strip_labels,
 )
-from ..laws import CoverModes, pressure, series_record
-from ..materials import total_series
+from ..laws import CoverModes, half_line_rule, pressure, series_record
+from ..materials import layer_excess, local_coupling, total_series
 from .contact_table import DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
-from .coupled_pair import CoupledPair, CoupledRow, depth, refuse_unsolved
+from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
 # --- Contacts by method "coupled" ---
+
+#: points of Gauss's rule in an element
+_GAUSS = 5
+#: first, last and step of s, with half length times wave number ln(1 + e^s): the transform of the
+#: pressure, squared, falls like the third power
+_WAVES = -25.0, 80.0, 0.12
 
 
 @lru_cache(maxsize=16)
@@ -185,6 +191,68 @@ def _fields_of_row(
         depths = [depth(pair.bodies, row.u, row.profile(each)) for each in creep.tolist()]
         fields[DEPTH] = np.array(depths) / kappa
     return fields
+
+
+def depth(bodies: Any, u: float, profile: Any) -> float:
+    """Return the approach of two bodies, each rigid or a layer on a rigid body.
+
+    It is the mean, weighted by the pressure, of the displacement of both surfaces (by Parseval's
+    theorem) plus that of the cylinder's profile x^2/2.
+
+    bodies: a :class:`CoupledBody` for each body that deforms, of finite thickness.
+    u: kappa |V|, dimensionless, >= 0 or infinite.
+    profile: :class:`CoupledProfile`, tractions of the state, of which nodes, shift, p and q are
+        read; x is counted from the axis, nodes + shift.
+    Returns the approach divided by l0^2/R, a float, positive where the bodies have come closer than
+    at their first touch.
+    """
+    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    k, weights = half_line_rule(_WAVES[2], 1.0 / half, _WAVES[:2])
+    p = transforms(profile.nodes, profile.p, k)
+    q = transforms(profile.nodes, profile.q, k)
+    total = 0.0
+    for body in bodies:
+        instant, modes = body.at_speed(u)
+        compliance = wave_compliance(instant, modes, k)
+        L, _, C = layer_transforms(body.nu, k * body.thickness)
+        work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
+        total += body.share * float(weights @ work.real) / np.pi
+    x, weights = _element_points(profile.nodes)
+    pressure = np.interp(x, profile.nodes, profile.p) * weights
+    square = pressure @ (x + profile.shift) ** 2
+    return float((total + 0.5 * square) / pressure.sum())
+
+
+def _element_points(nodes: Floats) -> tuple[Floats, Floats]:
+    """Return points and weights of Gauss's rule in each element between ascending nodes, (m,)
+    each, in the unit of ``nodes``, (n,).
+    """
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    halves = 0.5 * np.diff(nodes)[:, None]
+    return (nodes[:-1, None] + halves * (1.0 + points)).ravel(), (halves * weights).ravel()
+
+
+def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
+    """Return the Fourier transform int f(x) exp(-i k x) dx of a function f that is linear between
+    nodes.
+
+    nodes, values: ascending x divided by l0, and f there, (n,) each.
+    k: wave numbers times l0, (m,).
+    Returns complex numbers, (m,), in the unit of f, by Gauss's rule in each element.
+    """
+    x, weights = _element_points(nodes)
+    return np.exp(-1j * np.multiply.outer(k, x)) @ (np.interp(x, nodes, values) * weights)
+
+
+def layer_transforms(nu: float, u: Floats) -> Floats:
+    """Return the transforms L, T and C (:mod:`.coupled_pair`) of a bonded layer.
+
+    nu: Poisson's ratio.
+    u: wave numbers times the thickness, > 0, (n,).
+    Returns L and T divided by those of a half-space, and C, dimensionless, (3, n).
+    """
+    L, shear, C = layer_excess(nu, u)
+    return np.array([1.0 + L, 1.0 + L + shear, local_coupling(nu) + C])
 
 
 def coupled_stress(

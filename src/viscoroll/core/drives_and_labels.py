@@ -481,10 +481,9 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
     Raises
     ------
     ParameterError
-        What :func:`convert_argument` refuses, as a unit of another dimension;
-        numbers of other kinds that are not finite; labelled arrays beside plain ones (numbers and
-        schedules
-        may stand beside them), arrays of xarray whose common axes have different coordinates,
+        What :func:`convert_argument` refuses, as a unit of another dimension; numbers of other
+        kinds that are not finite; labelled arrays beside plain ones (numbers and schedules may
+        stand beside them), arrays of xarray whose common axes have different coordinates,
         series of pandas with different indices, or both kinds together.
     """
     if UNITLESS_TYPES.issuperset(map(type, given.values())) or all(
@@ -586,13 +585,8 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     index = first.index
     if not all(index.equals(other.index) for other in others):
         names = " and ".join(series)
-        raise ParameterError(
-            names,
-            "unlike indices",
-            "of one index",
-            f"{names} have different indexes: align them first",
-        )
-
+        sentence = f"{names} have different indexes: align them first"
+        raise ParameterError(names, "unlike indices", "of one index", sentence)
     # the levels of the index as columns; the last column has the values, with a name that no
     # level has, since reset_index refuses a second column of one name
     levels = first.rename("").reset_index().iloc[:, :-1]

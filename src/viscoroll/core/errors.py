@@ -74,8 +74,8 @@ class ParameterError(ViscorollError, ValueError):
     alpha 0.5
     """
 
-    #: Sentence with a place {} for each of its dimensionless numbers, and quantity and value of
-    #: each, by which a call with a cylinder tells them in SI units; () without.
+    #: Sentence with a place {} for each of its dimensionless numbers, their quantity, and their
+    #: values, which a call with a cylinder tells in SI units; () without.
     dimensionless: tuple[Any, ...] = ()
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:

@@ -27,6 +27,7 @@ from ..contact_mechanics import (
     Roller,
     evaluate_law,
     loads_of,
+    pure_rolling_fields,
     refuse_arrays,
     states_at,
 )
@@ -44,6 +45,7 @@ from ..core import (
     described_error,
     make_dimensionless,
 )
+from ..laws import LawTable
 from ..materials import (
     ABSOLUTE_ZERO,
     WLF,
@@ -552,3 +554,10 @@ def check_ambient(ambient: Floats, curve: ShiftCurve, name: str) -> None:
                 f"be {allowed}"
             )
             raise ParameterError(name, at, allowed, sentence)
+
+
+@lru_cache(maxsize=16)
+def curve_of_moments(law: LawTable) -> Floats:
+    """Return kappa M of a law at log2 kappa V = n/16 - 900, all of them."""
+    x = np.arange(2 * FARTHEST * NODES + 1) / NODES - FARTHEST
+    return pure_rolling_fields(law, np.exp2(x), "M")[0]

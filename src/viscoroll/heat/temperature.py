@@ -11,7 +11,7 @@ pair of temperatures has a law of its own, of which the rows are made where they
 
 import warnings
 from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +21,6 @@ from ..contact_mechanics import (
     Roller,
     evaluate_law,
     pad,
-    pure_rolling_fields,
     resolve_model,
     warn_of_contact,
     zeros_between,
@@ -49,6 +48,7 @@ from .heated_bodies import (
     HeatStates,
     ShiftCurve,
     check_ambient,
+    curve_of_moments,
     heat_states,
     shift_curve,
     warm_pair,
@@ -122,10 +122,9 @@ def _zeros_by_kernel(
     law: the law at the reference.
     curve: the shift, of which slope, pole and own are read.
     x: log2 of kappa V, with V in units of R/T_ref at the reference, (n,).
-    ambient: degrees Celsius, (n,).
+    ambient, hottest: of the surroundings, and up to which zeros are sought, degrees Celsius, (n,).
     rise: rise of temperature for kappa M = 1, K, (n,): the loss is conductance times this times
         kappa M.
-    hottest: temperature up to which zeros are sought, degrees Celsius, (n,).
     """
     from ..kernels.law.heat_zeros import HeatRequest, heat_loop
 
@@ -137,7 +136,7 @@ def _zeros_by_kernel(
         hottest=hottest,
         pole=curve.pole,
         slope=curve.slope,
-        curve=_kept_curve(law),
+        curve=curve_of_moments(law),
         density=NODES,
         farthest=FARTHEST,
     )
@@ -153,20 +152,10 @@ def _zeros_by_kernel(
     return Zeros(n, ambient[n] + above[:count], stable[:count])
 
 
-@lru_cache(maxsize=16)
-def _kept_curve(law: LawTable) -> Floats:
-    """Return kappa M of a law at log2 kappa V = n/16 - 900, all of them."""
-    x = np.arange(2 * FARTHEST * NODES + 1) / NODES - FARTHEST
-    return pure_rolling_fields(law, np.exp2(x), "M")[0]
-
-
 def zeros_of(
     heat: Heat, curve: ShiftCurve, ambient: Floats, conductance: Floats, hottest: Floats
 ) -> Zeros:
-    """Find all zeros of the balances of states.
-
-    Between nodes of the temperature they are found as by
-    :func:`viscoroll.contact_mechanics.rolling_resistance.zeros_between`.
+    """Find all zeros of the balances of states (:func:`.rolling_resistance.zeros_between`).
 
     heat: function (indices of states, temperatures) -> heat of the body, W/m, (m,) each.
     curve: shift of the body, which places the nodes.
@@ -201,8 +190,6 @@ def zeros_of(
 #: Temperature up to which equilibria under a given load are looked for, degrees Celsius: rubbers
 #: char below it.  At a given speed the loss bounds the temperature.
 HOTTEST = 500.0
-#: Fields that are divided by a_T under a given load -> those of ``steady`` at the reference.
-_PER_TIME = {"V": "V", "loss": "loss", "loss_slip": "slip"}
 
 
 class Temperatures(Equilibria):
@@ -249,8 +236,7 @@ class Temperatures(Equilibria):
     ) -> None:
         """Pad the equilibria of states to arrays (states..., equilibria).
 
-        states: the states of the call.
-        zeros: the equilibria, (m,), unsorted.
+        states, zeros: the states of the call, and the equilibria, (m,), unsorted.
         rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in the loss is
             dropped, and stated as the reason where no other one is left.
         labels: labels of the arguments, which the fields get; None without.
@@ -279,9 +265,8 @@ class Temperatures(Equilibria):
         -------
         xarray.Dataset
             Over the axes of the states (of one state none; named as in labelled arguments, else
-            ``state``) and
-            ``equilibrium``: the fields of this result, ``stable`` and ``measured`` as 0 or 1;
-            ``count`` over the axes of the states alone.  ``reason`` is left out.
+            ``state``) and ``equilibrium``: the fields of this result, ``stable`` and ``measured``
+            as 0 or 1; ``count`` over the axes of the states alone.  ``reason`` is left out.
 
         Examples
         --------
@@ -376,15 +361,13 @@ def temperature(
     level = roller
     (roller, scene, scale) = resolve_model(roller, "temperature", slope=slope)
     driven = {"force": force, "torque": torque, "slope": slope}
-    plain, labels = strip_labels(
-        {"V": V, "ambient": ambient, "conductance": conductance} | driven, scale
-    )
+    given = {"V": V, "ambient": ambient, "conductance": conductance} | driven
+    plain, labels = strip_labels(given, scale)
     driven = {name: plain[name] for name in driven}
     loaded = any(value is not None for value in driven.values())
     if V is None and not loaded:
-        raise described_error(
-            "V", "is not given", "given, or a force, torque or slope from which it follows"
-        )
+        allowed = "given, or a force, torque or slope from which it follows"
+        raise described_error("V", "is not given", allowed)
     beside = driven if loaded and V is not None else None
     states = heat_states(
         roller, scene, call="temperature", given=plain, slip_share=slip_share, driven=beside
@@ -403,16 +386,13 @@ def temperature(
 def _under_load(
     level: Any, states: HeatStates, driven: dict[str, Any]
 ) -> tuple[dict[str, Floats], Zeros]:
-    """Return the fields of the equilibria under given loads, where the speed follows from the
-    temperature.
+    """Return the equilibria under given loads, where the speed follows from the temperature.
 
-    level: the roller on no slope.
-    states: the states, without V.
+    level, states: the roller on no slope; the states, without V.
     driven: force, torque and slope as :func:`temperature` has them.
     Each branch of M(V) = force + torque/R at the reference, with speed V_0 and loss w_0, is a
     balance of its own, in which the speed is V_0/a_T and the loss w_0/a_T.
-    Returns (fields, as :meth:`.HeatStates.fields`; the zeros, of which only those of a stable speed
-    may be stable).
+    Returns (fields, as :meth:`.HeatStates.fields`; the zeros, stable only where the speed is too).
     Raises ParameterError for a material with a vertical shift, and as :func:`viscoroll.steady`.
     """
     if states.body.material.vertical_shift is not None:
@@ -429,7 +409,7 @@ def _under_load(
     n, branch = np.nonzero(np.nan_to_num(found.V).reshape(states.load.size, -1))
     at = {name: np.reshape(x, (states.load.size, -1))[n, branch] for name, x in fields.items()}
     rolling = at["half_space"] + at["cylinder"]
-    at["loss"] = rolling + at["slip"]
+    at |= {"loss": rolling + at["slip"], "loss_slip": at["slip"]}
     power = states.body.part * rolling + states.body.slip * at["slip"]
     zeros = zeros_of(
         lambda k, theta: power[k] / states.curve.at(theta)[0],
@@ -441,7 +421,7 @@ def _under_load(
     k = zeros.state
     a_T = states.curve.factors(zeros.theta)[0]
     rows = {name: at[name][k] for name in MOMENTS}
-    rows |= {name: at[of][k] / a_T for name, of in _PER_TIME.items()}
+    rows |= {name: at[name][k] / a_T for name in ("V", "loss", "loss_slip")}
     rows["temperature"] = zeros.theta
     rows["a_T"] = np.where(zeros.theta > states.curve.high, np.nan, a_T)
     rows["C_rr"] = rows["M"] / (states.load * states.R)[n[k]]
@@ -453,10 +433,8 @@ def _reasons(
 ) -> Any:
     """Return the reasons why states have no equilibrium within the ranges of shift and data.
 
-    states: the states.
-    zeros, rows: the equilibria found and their fields, (m,) each.
-    known: whether a_T and the loss of each equilibrium are numbers, (m,).
-    inside: whether its speed lies within the data, (m,).
+    states, zeros, rows: the states, the equilibria found, (m,), and their fields, (m,) each.
+    known, inside: whether their a_T and loss are numbers, and their speed within the data, (m,).
     Returns texts, (states,), objects; "" for a state that has an equilibrium.
     """
     found = np.full(states.load.size, "", object)
@@ -515,8 +493,7 @@ class PairTemperatures(NamedTuple):
 def pair_temperatures(
     roller: Roller, V: float, *, ambient: tuple[float, float], conductance: tuple[float, float]
 ) -> PairTemperatures:
-    """Find the temperatures of two half-spaces that both relax, of one or of two materials, in free
-    rolling.
+    """Find the temperatures of two half-spaces that both relax, in free rolling.
 
     Parameters
     ----------
@@ -557,9 +534,8 @@ def pair_temperatures(
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
     if pair is None or scene.shape or pair.covered:
-        raise described_error(
-            "roller", "has arrays, a layer or no Material", "a Cylinder of two half-spaces"
-        )
+        problem = "has arrays, a layer or no Material"
+        raise described_error("roller", problem, "a Cylinder of two half-spaces")
     speed = abs(check_number("V", V, unit=scale))
     around = check_array("ambient", ambient)
     off = check_array("conductance", conductance, above=0.0)
@@ -576,12 +552,11 @@ def pair_temperatures(
 
     def losses(theta: Floats) -> Floats:
         """Return the loss P |V| M_b/(P R) of each body b, W/m, (2, m), with M_b its part of the
-        moment of free rolling without creepage.
+        moment of free rolling without creepage; no shear acts, so that any mu, here 1, will do.
 
-        theta: temperatures of cylinder and base, degrees Celsius, (2, m).
-        The temperatures change E' and the times of both bodies: kappa = R/l0 grows like the root of
-        E', and the dimensionless speed is V T_ref/R with the T_ref of the warm pair.  mu is 1: any
-        will do, since no shear acts.
+        theta: temperatures of cylinder and base, degrees Celsius, (2, m), which change E' and the
+            times: kappa = R/l0 grows like the root of E', and V is divided by R/T_ref of the warm
+            pair.
         """
         warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
@@ -589,11 +564,8 @@ def pair_temperatures(
         fields = ("M_cylinder", "M_half_space")
         # index of the pair, kappa, mu, V and delta
         state = [index, own, 1.0, speed * warm.T_ref / scale["R"], 0.0]
-        return (
-            load
-            * speed
-            * evaluate_law(warm.law, state, shape=index.shape, creep_is_omega=False, names=fields)
-        )
+        M = evaluate_law(warm.law, state, shape=index.shape, creep_is_omega=False, names=fields)
+        return load * speed * M
 
     def rest(theta: Any) -> Floats:
         """Return ambient + loss/conductance - theta of each body, K, (2, m): 0 in balance."""

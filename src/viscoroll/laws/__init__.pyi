@@ -3,9 +3,7 @@
 from .cover_rows import solve_at_speed as solve_at_speed
 from .cover_solve import CoverModes as CoverModes
 from .cover_solve import half_line_rule as half_line_rule
-from .cover_solve import layer_excess as layer_excess
 from .cover_solve import layer_nodes as layer_nodes
-from .cover_solve import local_coupling as local_coupling
 from .cover_solve import pressure as pressure
 from .law_grid import LawGrid as LawGrid
 from .law_grid import check_nodes as check_nodes

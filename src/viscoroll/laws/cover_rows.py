@@ -57,7 +57,7 @@ from .cover_solve import (
     solve,
     term_count,
 )
-from .law_rows import NODES, SHORT_TERMS, Rows, row_range
+from .law_rows import PER_OCTAVE, SHORT_TERMS, Rows, fit_end, interpolate_octaves, row_range
 from .row_layout import CoverRows, constant_rows, steady_table
 
 # --- What shear does in the contact of a cover, to first order ---
@@ -123,12 +123,9 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
 
 def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
     """Return the mean slope of the surfaces over the contact that an excess memory of the creep
-    modes makes, as on half-spaces.
+    modes makes, as on half-spaces: without what the operator S of the layers adds.
 
-    What the operator S of the layers adds to the mean slope is not in it.
-
-    modes: :class:`CoverModes`.
-    state: :class:`CoverState`, of which the exponentials are read.
+    modes, state: as in :func:`shear_of`.
     excess: excess memory of each creep mode, (modes,), or (modes, k) of k solutions.
     Returns the slope in units of V T_ref/R, a float, or (k,).
     """
@@ -145,9 +142,7 @@ def _sources(
     """Return the strain C p of each body, divided by the compliance of both, as a source in the
     equations of the contact: terms T_n(x), and excess memory of each creep mode.
 
-    modes: :class:`CoverModes`.
-    z: half contact length divided by V T_ref, > 0.
-    state: :class:`CoverState`, of N terms.
+    modes, z, state: as in :func:`shear_of`; the state has N terms.
     local: the pressure at points, for the coupling of short waves; None: there is none.
     Returns (terms from n = 0, (N + 1, 2); excess memory, (modes, 2)).
     """
@@ -171,8 +166,7 @@ def _mirrored(modes: CoverModes, state: CoverState, local: LocalPressure | None)
     The part of a body is minus the mean of its C p, mirrored about the middle of the contact, with
     p as weight.
 
-    modes: :class:`CoverModes`.
-    state: :class:`CoverState`.
+    modes, state: as in :func:`shear_of`.
     local: what the coupling of short waves has in it; None: nothing.
     """
     # the square of the transform, where the mean itself has that of its magnitude: it is the
@@ -188,9 +182,7 @@ def _moments(modes: CoverModes, z: float, state: CoverState) -> Floats:
     Each creep mode has a part, as for half-spaces (:mod:`.material_series`), without
     cancellation; what the layers' smooth kernels change in the slopes is an integral over the wave
     number.
-    modes: :class:`CoverModes`.
-    z: half contact length divided by V T_ref, > 0.
-    state: :class:`CoverState`.
+    modes, z, state: as in :func:`shear_of`.
     """
     # what all layers change in the slopes by the pressure; a body moves by its part of the
     # compliance
@@ -211,9 +203,7 @@ def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
     """Return the mean of 1 - exp(alpha_i x)/I_0(alpha_i) over the contact, with the pressure as
     weight.
 
-    modes: :class:`CoverModes`, with at least one mode.
-    z: half contact length divided by V T_ref, > 0.
-    state: :class:`CoverState`.
+    modes, z, state: as in :func:`shear_of`, with at least one mode.
     Returns (modes,), dimensionless.  Sums over all orders are in closed form, with i2 = I_2/I_0.
     """
     ratio = state.exponentials.ratio
@@ -236,15 +226,6 @@ def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
 
 # --- The law of a cover over speed ---
 
-#: nodes an octave of u at which the cover is solved; with 12 and the neighbours below rows agree
-#: with the solve to 1e-11
-PER_OCTAVE = 12
-#: nodes on either side of an octave that take part in its polynomial; with 18 it is accurate to
-#: rounding
-_ASIDE = 18
-#: imaginary step for derivatives, relative or of log2 u; its square is far below rounding,
-#: dimensionless
-_TINY = 1e-30
 #: quantities of a node
 _COUNT = 11
 #: index of lam among them
@@ -271,13 +252,11 @@ _BEYOND = 42
 #: nodes of the polynomials at either end, from 0.05 to 1 of their range: wide enough for the noise
 #: of the solve, which loses digits there, not to be amplified at 0
 _END_NODES = 52
-#: degree of these polynomials
-_END_DEGREE = 12
-#: degree of those by shear, which for nu < 1/2 have terms in ln u at low speed, from the memory of
-#: the pressure near the edges.  Where the first octave begins they jump by 4e-12 of 2 kappa
-#: delta_star/mu, and by 4e-10 with 12; with 18 the noise of the solve makes their slopes jump by
-#: 1e-4, with 14 by 1e-6
-_STRAIN_DEGREE = 14
+#: (quantities, degree of these polynomials): lam to the moments; and those by shear, with terms in
+#: ln u at low speed for nu < 1/2, from the memory of the pressure near the edges: where the first
+#: octave begins they jump by 4e-12 of 2 kappa delta_star/mu, with 12 by 4e-10, and their slopes by
+#: 1e-6, with 18 by 1e-4 for the noise of the solve
+_DEGREES = (slice(0, _FREE.start), 12), (slice(_FREE.start, None), 14)
 #: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too:
 #: without them M was wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9;
 #: more terms amplify the noise of the solve
@@ -352,19 +331,17 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     values = _solve_nodes(modes, u, orders)
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
     y = np.ldexp(u[:_END_NODES], -e0)
-    slow_limit, _, slow = _fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0])
-    inside = _interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
+    slow_limit, _, slow = fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0], _DEGREES)
+    inside = interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
     x = rows.x[last - e0 + 1 :]
-    half_space_relaxes = (
-        cover.other_thickness is None and cover.other.alpha > 1.0 and cover.part < 1.0
-    )
+    relaxes = cover.other_thickness is None and cover.other.alpha > 1.0 and cover.part < 1.0
     fast, limits = _fit_fast_rows(
         u[-_END_NODES:],
         values[:, -_END_NODES:],
         limits=fast_limit,
         x=x,
         begin=math.ldexp(1.0, last),
-        log_terms=_LOG_TERMS if half_space_relaxes else 0,
+        log_terms=_LOG_TERMS if relaxes else 0,
     )
     fitted = np.concatenate([slow[:, :, None], inside, fast], axis=2)
     pressure = rows.fit_slopes(*fitted[:, : _FREE.start])
@@ -413,8 +390,7 @@ def _solve_node(
     slope: first approximation of d ln H/d ln z, > 0; 2 is that of a half-space.
     orders: number of terms of the pressure; None: the default of the solve.
     stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the
-        ``modes`` of elastic bodies;
-        1: the modes have their own stiffness.
+        ``modes`` of elastic bodies; 1: the modes have their own stiffness.
     Returns (the quantities of a node, (11,), dimensionless; ln z after the last secant step; d ln
     H/d ln z of the first one).
     Raises ParameterError where the secant method has not ended after 40 solves.
@@ -432,14 +408,10 @@ def _solve_node(
         )
         start = _find_length(modes, u, y=rough, slope=slope, orders=orders, goal=goal)[0][-1]
         # a slope as good as one that is extrapolated, for errors to be smooth over u
-        lengths, errors, _ = _find_length(
-            modes, u, y=start + _OFFSET, slope=slope, orders=orders, goal=goal
-        )
-        start = lengths[-1]
-        slope = (errors[1] - errors[0]) / (lengths[1] - lengths[0])
-    y, errors, states = _find_length(
-        modes, u, y=start + _OFFSET, slope=slope, orders=orders, goal=goal
-    )
+        y, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
+        start = y[-1]
+        slope = (errors[1] - errors[0]) / (y[1] - y[0])
+    y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
     slope = (errors[1] - errors[0]) / (y[1] - y[0])
     # epsilon = g/z of each solve; y has one entry more, the step after the last solve
     shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
@@ -496,18 +468,12 @@ def _find_length(
         if len(errors) > 1 and abs(errors[-1] * errors[-2]) < _LOAD_ERRORS:
             return [*lengths, y + step], errors, states
         # at most a factor of 2 in z at once; no step so small that the next slope would be rounding
-        y += (
-            min(max(step, -0.7), 0.7)
-            if abs(step) > _LEAST_STEP
-            else math.copysign(_LEAST_STEP, step)
-        )
-    found = f"{modes.cover.thinnest:g}"
-    raise ParameterError(
-        "thickness/l0",
-        found,
+        y += math.copysign(min(max(_LEAST_STEP, abs(step)), 0.7), step)
+    allowed = (
         "larger: no contact length that carries the load was found; take a thicker layer or a "
-        "smaller load (l0: contact length at rest of half-spaces)",
+        "smaller load (l0: contact length at rest of half-spaces)"
     )
+    raise ParameterError("thickness/l0", f"{modes.cover.thinnest:g}", allowed)
 
 
 def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:
@@ -537,20 +503,16 @@ def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     """Solve the cover with elastic bodies: the limit of slow rolling, all relaxation completed, or
     of fast rolling.
 
-    lam is the contact length divided by l0, delta_star the critical creepage, delta_0 the creepage
-    of free rolling, epsilon the shift of the contact ahead of the axis in half contact lengths.
     lam, L and delta_0 of elastic bodies do not depend on the speed, so that one solve, at u = 1/2,
     gives them.  In fast rolling all compliances are divided by alpha.  Then the length that carries
     the load is that of a load alpha times smaller on bodies of the long-time stiffness, and the
     slopes and creep of elastic bodies depend on that length and the layer's part of the compliance
     alone: bodies of the long-time stiffness are solved in both limits, under a load that
     ``stiffness`` divides.
-    modes: :class:`CoverModes` of the viscoelastic bodies, of which the Poisson's ratios and the
-    thickness are taken.
+    modes: :class:`CoverModes` of the viscoelastic bodies.
     share: the cylinder's part of the compliance of both bodies, in [0, 1]: of long times for slow
         rolling, of the instantaneous compliance for fast rolling.
-    stiffness: stiffness of the bodies divided by their long-time stiffness: 1 for slow rolling,
-    alpha for fast rolling.
+    stiffness: that of the bodies over the long-time one: 1 for slow, alpha for fast rolling.
     Returns the quantities of a node, (11,), dimensionless, epsilon and M/V exactly 0.
     Raises ParameterError where no contact length that carries the load is found.
     """
@@ -568,14 +530,13 @@ def _fit_fast_rows(
 
     Beside a half-space that relaxes too, a second polynomial of 1/u, of ``log_terms`` terms, times
     ln u is added.
-    u: last nodes of the solve, ascending, from ``begin`` to at most 20 ``begin``, (n,),
-    dimensionless.
+    u: last nodes of the solve, ascending, from ``begin`` to at most 20 ``begin``, (n,).
     values: the quantities there, (11, n); not changed.
     limits: of these for u -> infinity, (11,); NaN: not known, then the value of a fitted polynomial
         at 1/u = 0 is taken.  Those of epsilon and M/V are 0.
     x: nodes of these rows in u, ascending, >= ``begin``, (rows, nodes).
     begin: u where these rows begin, the end of the last octave.
-    log_terms: number of terms in ln u, as in :func:`_fit_end`.
+    log_terms: number of terms in ln u, as in :func:`.law_rows.fit_end`.
     Returns (values and slopes over ln u at x, of the quantities, (2, 11, rows, nodes);
         :attr:`.row_layout.CoverRows.limits`, (19,), of which the last eleven, factors of 1/u, are
         those at the last node of x).
@@ -584,8 +545,8 @@ def _fit_fast_rows(
     x_inverse = (begin / x).ravel()
     values = values.copy()
     values[_MOMENTS] /= y
-    limits, first, (fitted, slopes) = _fit_end(
-        y, values, limits=limits, wanted=x_inverse, log_terms=log_terms
+    limits, first, (fitted, slopes) = fit_end(
+        y, values, limits=limits, wanted=x_inverse, degrees=_DEGREES, log_terms=log_terms
     )
     slopes[_MOMENTS] = (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
     fitted[_MOMENTS] = fitted[_MOMENTS] * x_inverse
@@ -599,84 +560,6 @@ def _fit_fast_rows(
     return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
 
 
-def _fit_end(
-    y: Floats, values: Floats, limits: Floats, wanted: Floats, log_terms: int = 0
-) -> tuple[Floats, Floats, Floats]:
-    """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares, at one
-    end of the speeds.
-
-    The degree of P is 14 for what shear does and 12 for the others.
-    y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
-    values: the quantities at the nodes (at the fast end M/(V y)), (11, n).
-    limits: values for y -> 0, (11,); for NaN the value at 0 of a polynomial through the values is
-    taken.
-    wanted: points in (0, 1], (m,), m >= 1.
-    log_terms: number of terms of R; 0: none.
-    Returns (limits, (11,), with the values at 0 in place of NaN; P + R ln y at the last of the
-    points, (11,); values and derivatives with respect to ln y at the points, (2, 11, m)).
-    """
-    from numpy.polynomial.chebyshev import chebvander
-
-    def basis(y: Any, degree: int, log_terms: int) -> Any:
-        """Return the terms at points ``y``, (points,), real or complex, (points, terms): Chebyshev
-        polynomials of 2 y - 1 up to ``degree``, then the first ``log_terms`` of them times ln y.
-        """
-        terms = chebvander(2.0 * y - 1.0, degree)
-        return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
-
-    def fit(values: Floats, at: Any, log_terms: int) -> Any:
-        """Fit each quantity by least squares, and return the fits at other points.
-
-        values: quantities at the nodes y, (11, n).
-        at: points, (points,); complex ones give derivatives.
-        log_terms: number of terms times ln y, as in :func:`basis`.
-        Returns (11, points), complex where ``at`` is.
-        """
-        # lam to the moments by one degree; f, g, lam_Q and epsilon_Q, which need shear, by another
-        parts = (values[: _FREE.start], _END_DEGREE), (values[_FREE.start :], _STRAIN_DEGREE)
-        return np.concatenate(
-            [
-                (
-                    basis(at, n, log_terms)
-                    @ np.linalg.lstsq(basis(y, n, log_terms), part.T, rcond=None)[0]
-                ).T
-                for part, n in parts
-            ]
-        )
-
-    # 1e-30 in place of 0, whose logarithm :func:`basis` takes also where no term has it
-    limits = np.where(np.isnan(limits), fit(values, np.array([_TINY]), 0)[:, 0], limits)[:, None]
-    # slopes by a step in the imaginary direction, which cancels no digits
-    P = fit((values - limits) / y, wanted * (1.0 + 1j * _TINY), log_terms)
-    value = P.real
-    slope = P.imag / _TINY
-    return limits[:, 0], value[:, -1], np.stack([wanted * value + limits, wanted * (value + slope)])
-
-
-def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
-    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes,
-    barycentric.
-
-    values: the quantities at the nodes of the solve, which are evenly spaced in log2 u, 12 an
-    octave, (11, n).
-    begin: index of the node where the first octave begins, at least 18; 18 nodes before each octave
-        and 18 after it are used.
-    count: number of octaves.
-    Returns values and slopes over ln u at the 24 nodes of each octave, (2, 11, octaves, 24).
-    """
-    points = PER_OCTAVE + 2 * _ASIDE + 1
-    nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
-    # barycentric weights of equidistant nodes
-    weights = np.array([(-1.0) ** k * math.comb(points - 1, k) for k in range(points)])
-    # slopes by a step in the imaginary direction, which cancels no digits
-    # the node t of an octave lies at log2((t + 3)/2) octaves from its begin
-    terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _TINY - nodes[:, None])
-    basis = terms / terms.sum(axis=0)
-    windows = np.lib.stride_tricks.sliding_window_view(values, points, axis=1)
-    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
-    return np.stack([around @ basis.real, around @ basis.imag / (_TINY * math.log(2.0))])
-
-
 def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
     """Return eta/F and H/F^2 of a cover at the nodes of v = 1/F(eta), and their derivatives with
     respect to ln v.
@@ -684,10 +567,9 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     With L = 2 kappa delta_star/mu the creep limit of the whole contact, L/(2 u) in units of V
     T_ref/R, that of the stick zone is F' = w/(2 u), w = L - 2 kappa |delta - delta_0|/mu.  The law
     of the stick zone is taken as that of the whole contact at the speed u' with L(u')/(2 u') = F'.
-    So v = 2
-    u'/L(u'), H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').  That u' is found by Newton's method in
-    ln u', from u' = v, until all steps are below 1e-15, in at most 60 steps; nothing is raised if
-    it takes more.
+    So v = 2 u'/L(u'), H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').  That u' is found by Newton's
+    method in ln u', from u' = v, until all steps are below 1e-15, in at most 60 steps without an
+    error.
 
     rows: octaves of u and of v, as :class:`.law_rows.Rows`.
     powers: coefficients of lam, L, 2 kappa delta_0, epsilon and M/V over u, (5, rows, 24); lam and

@@ -38,7 +38,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Floats
-from ..materials import Cover
+from ..materials import Cover, layer_excess, local_coupling
 from .law_rows import modes_record
 
 # --- Steady rolling on bonded viscoelastic layers of finite thickness ---
@@ -87,8 +87,7 @@ class CoverState(NamedTuple):
         u' = kappa |V| the contact carries the load where H = 1/(4 u'^2).
     shift : g = epsilon z, the shift of the contact ahead of the axis divided by V T_ref.
     moment : M/V of both bodies, with M divided by P R and V by R/T_ref.
-    creep_limit : delta_star/mu in units of V T_ref/R: the creep from which on the whole contact
-    slips.
+    creep_limit : delta_star/mu in units of V T_ref/R, from which on the whole contact slips.
     q : terms of the pressure q_1 ... q_N, (N,).
     X : amplitudes of the relaxation modes, (modes,); from them follow terms of any higher order.
 
@@ -148,8 +147,7 @@ class CoverModes:
 
     Compliances are parts of the long-time compliance of both bodies as half-spaces.
 
-    series : record of the modes of both bodies together (:func:`.law_rows.modes_record`); its rates
-    are in 1/T_ref.
+    series : record of the modes of both (:func:`.law_rows.modes_record`), rates in 1/T_ref.
     J : creep strengths of both bodies together, (modes,).
     alpha : instantaneous divided by long-time stiffness of both together, float >= 1.
     gap : relaxation rates less creep rates of both together, [creep, relaxation], in 1/T_ref.
@@ -236,8 +234,7 @@ def half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tupl
 
 @lru_cache(maxsize=64)
 def layer_nodes(nu: float) -> Floats:
-    """Return the kernels of a layer at the nodes of the integrals over the wave number; kept for
-    the next call.
+    """Return the kernels of a layer at the nodes of the integrals over the wave number, kept.
 
     Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
     nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
@@ -247,31 +244,6 @@ def layer_nodes(nu: float) -> Floats:
     """
     u, du = half_line_rule(_STEP, _SCALE, _ENDS)
     return np.array([u, *(layer_excess(nu, u) * (du / u))])
-
-
-def layer_excess(nu: float, u: Floats) -> Floats:
-    """Return what distinguishes a bonded layer from a half-space under a wave of traction.
-
-    nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
-    u: wave number times the thickness, > 0, (n,).
-    Returns L - 1, T - L, and C less :func:`local_coupling`, dimensionless, (3, n), without
-    cancellation.
-    """
-    # with D = kap (1 + e^2) + (4 u^2 + 1 + kap^2) e: L = (kap (1 - e^2) - 4 u e)/D, and T has + 4 u
-    # e; e = exp(-2 u) in place of hyperbolic functions, which overflow
-    kap = 3.0 - 4.0 * nu
-    e = np.exp(-2.0 * u)
-    denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
-    coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / (
-        (kap + 1.0) * denominator
-    ) - local_coupling(nu)
-    rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
-    return np.array([-e * rest / denominator, 8.0 * u * e / denominator, coupling])
-
-
-def local_coupling(nu: Any) -> Any:
-    """Return (1 - 2 nu)/(2 - 2 nu), by which shear tilts a half-space of Poisson's ratio ``nu``."""
-    return (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
 
 
 def bessel(v: Floats, order: int) -> Floats:
@@ -321,8 +293,7 @@ def decays(beta: Floats, order: int) -> Floats:
     beta: b_j z, rates of creep times the half contact length over V, dimensionless, > 0, (modes,);
         above 1e12 the value at 1e12 is taken, as nothing then changes.
     order: highest n, at most 100.
-    Returns D_n, dimensionless, in (0, 1], a new array (order + 1, modes): row n is that of the n-th
-    term.
+    Returns D_n, dimensionless, in (0, 1], a new array (order + 1, modes), a row for each term.
     """
     beta = np.minimum(beta, _LARGE_BETA)
     x, weights = _decay_nodes()
@@ -359,8 +330,7 @@ class Exponentials(NamedTuple):
 def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
     """Evaluate the relaxation and creep modes on a contact, as for a half-space.
 
-    modes: :class:`CoverModes` of the cover and the other body; without modes all arrays are empty
-    along that axis.
+    modes: :class:`CoverModes`; without modes all arrays are empty along that axis.
     z: half contact length divided by V T_ref, dimensionless, > 0.
     N: highest order of the Bessel functions, the number of terms of the pressure, >= 1.
     Returns ratios of Bessel functions, (N + 1, modes), and the matching at the front edge, as
@@ -386,8 +356,7 @@ def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
 
 
 def _excess_memory(v: Floats, A: Floats, beta: Floats, D: Floats) -> Any:
-    """Return the memory of exp(i v x) at the front edge, less that of its Chebyshev series, which
-    decays beyond it.
+    """Return the memory of exp(i v x) at the front edge, less that of its Chebyshev series.
 
     v: wave numbers times half contact length, dimensionless, (n,).
     A: signed Bessel functions there, as in :func:`bessel`, (N + 1, n).
@@ -403,16 +372,14 @@ def _excess_memory(v: Floats, A: Floats, beta: Floats, D: Floats) -> Any:
 
 
 def layer_operator(A: Floats, memory: Any, weights: Any) -> tuple[Floats, Floats]:
-    """Return the contributions of layers to the slope and to the memory, beyond those of a
-    half-space.
+    """Return what layers add to the slope and to the memory of half-spaces.
 
     A: signed Bessel functions at the nodes of the rule, as in :func:`bessel`, (N + 1, n).
     memory: excess memory there (:func:`_excess_memory`), (modes, n).
     weights: the layers' multiplier over u, as (L - 1)/u, times the weights of the rule and times
         the complex compliance of the layer divided by that of both bodies, (n,).
-    Returns (S, c).  S (N + 1, N) maps the coefficients q to those of the slope: the slope is sum (S
-    q)_n T_n(x), n from
-    0.  c (modes, N): c q is the excess memory of that slope in each creep mode.
+    Returns (S, c).  S (N + 1, N) maps the coefficients q to those of the slope, sum (S q)_n T_n(x),
+    n from 0.  c (modes, N): c q is the excess memory of that slope in each creep mode.
     """
     N = len(A) - 1
     n = np.arange(N + 1)
@@ -439,8 +406,7 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     z: half contact length divided by V T_ref, dimensionless, > 0 and finite.
     half: half contact length divided by l0, dimensionless, > 0; at most six times the thickness of
         each layer; not checked.
-    orders: number of terms of the pressure, at most 100; None (or 0): 14 + 6 theta of the thinner
-    layer, rounded up.
+    orders: number of terms of the pressure, at most 100; None: as :func:`term_count` has them.
     Returns a :class:`CoverState`; slopes and creep are over V T_ref/R.
     """
     N = orders or term_count(half / modes.cover.thinnest)
@@ -538,10 +504,7 @@ def pressure(modes: CoverModes, z: float, half: float, x: Floats) -> Floats:
 def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) -> Floats:
     """Return the first coefficients of the pressure, more of them than the solve has.
 
-    The pressure is sqrt(1 - x^2) sum q_m U_(m-1)(x), x in [-1, 1].
-    modes: :class:`CoverModes` of the cover and the other body.
-    z: half contact length divided by V T_ref, dimensionless, > 0.
-    state: :class:`CoverState` of the contact of that length; its own coefficients are taken,
+    modes, z, state: as in :func:`local_pressure`; of the state its own coefficients are taken,
         further ones follow from its relaxation modes and are 0 without such modes.
     count: number of coefficients, not below that of ``state``.
     Returns q_m for m = 1, 2, ..., (count,).
@@ -558,10 +521,8 @@ class LocalPressure(NamedTuple):
     """The coupling C of short waves, that of half-spaces, of each body, times its compliance, of
     the pressure.
 
-    terms : coefficients of T_n(x), over the compliance of both bodies, on the contact, (intervals +
-    1, 2).
-    mirrored : mean of the coupling, mirrored about the middle of the contact, with the pressure as
-    weight, (2,).
+    terms : coefficients of T_n(x), over the compliance of both bodies, (intervals + 1, 2).
+    mirrored : mean of the coupling, mirrored about the middle, with the pressure as weight, (2,).
     """
 
     terms: Floats

@@ -20,6 +20,7 @@ length over that at rest, (1 + 2 h/z)^(-1/2).
 grid: :class:`CoupledRows`, with the vector of splines that kernels read (:mod:`.coupled_splines`).
 """
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -197,6 +198,96 @@ def _multiply(values: Floats, matrix: Floats) -> Floats:
     for k in range(1, len(matrix)):
         product += values[..., k, None] * matrix[k]
     return product
+
+
+# --- Rows from values at nodes of the speed ---
+
+#: nodes an octave of u at which a cover is solved; with 12 and the neighbours below rows agree with
+#: the solve to 1e-11
+PER_OCTAVE = 12
+#: nodes on either side of an octave that take part in its polynomial; with 18 it is accurate to
+#: rounding
+_ASIDE = 18
+#: imaginary step for derivatives, relative or of log2 u; its square is far below rounding,
+#: dimensionless
+_TINY = 1e-30
+
+
+def fit_end(
+    y: Floats,
+    values: Floats,
+    limits: Floats,
+    wanted: Floats,
+    degrees: tuple[tuple[slice, int], ...],
+    log_terms: int = 0,
+) -> tuple[Floats, Floats, Floats]:
+    """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares, at one
+    end of the speeds.
+
+    y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
+    values: quantities at the nodes (at the fast end M/(V y)), (k, n).
+    limits: values for y -> 0, (k,); for NaN the value at 0 of a polynomial through the values is
+        taken.
+    wanted: points in (0, 1], (m,), m >= 1.
+    degrees: (quantities, degree of P) of groups of quantities, all of them in order.
+    log_terms: number of terms of R; 0: none.
+    Returns (limits, (k,), with the values at 0 in place of NaN; P + R ln y at the last of the
+    points, (k,); values and derivatives with respect to ln y at the points, (2, k, m)).
+    """
+    from numpy.polynomial.chebyshev import chebvander
+
+    def basis(y: Any, degree: int, log_terms: int) -> Any:
+        """Return the terms at points ``y``, (points,), real or complex, (points, terms): Chebyshev
+        polynomials of 2 y - 1 up to ``degree``, then the first ``log_terms`` of them times ln y.
+        """
+        terms = chebvander(2.0 * y - 1.0, degree)
+        return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
+
+    def fit(values: Floats, at: Any, log_terms: int) -> Any:
+        """Fit each quantity by least squares, and return the fits at other points.
+
+        values: quantities at the nodes y, (k, n).
+        at: points, (points,); complex ones give derivatives.
+        log_terms: number of terms times ln y, as in :func:`basis`.
+        Returns (k, points), complex where ``at`` is.
+        """
+        found = []
+        for some, n in degrees:
+            factors = np.linalg.lstsq(basis(y, n, log_terms), values[some].T, rcond=None)[0]
+            found.append((basis(at, n, log_terms) @ factors).T)
+        return np.concatenate(found)
+
+    # 1e-30 in place of 0, whose logarithm :func:`basis` takes also where no term has it
+    limits = np.where(np.isnan(limits), fit(values, np.array([_TINY]), 0)[:, 0], limits)[:, None]
+    # slopes by a step in the imaginary direction, which cancels no digits
+    P = fit((values - limits) / y, wanted * (1.0 + 1j * _TINY), log_terms)
+    value = P.real
+    slope = P.imag / _TINY
+    return limits[:, 0], value[:, -1], np.stack([wanted * value + limits, wanted * (value + slope)])
+
+
+def interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
+    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes,
+    barycentric.
+
+    values: the quantities at the nodes of the solve, which are evenly spaced in log2 u, 12 an
+        octave, (k, n).
+    begin: index of the node where the first octave begins, at least 18; 18 nodes before each octave
+        and 18 after it are used.
+    count: number of octaves.
+    Returns values and slopes over ln u at the 24 nodes of each octave, (2, k, octaves, 24).
+    """
+    points = PER_OCTAVE + 2 * _ASIDE + 1
+    nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
+    # barycentric weights of equidistant nodes
+    weights = np.array([(-1.0) ** k * math.comb(points - 1, k) for k in range(points)])
+    # slopes by a step in the imaginary direction, which cancels no digits
+    # the node t of an octave lies at log2((t + 3)/2) octaves from its begin
+    terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _TINY - nodes[:, None])
+    basis = terms / terms.sum(axis=0)
+    windows = np.lib.stride_tricks.sliding_window_view(values, points, axis=1)
+    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
+    return np.stack([around @ basis.real, around @ basis.imag / (_TINY * math.log(2.0))])
 
 
 # --- Values of the law by its modes, without a table ---

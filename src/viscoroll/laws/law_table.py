@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core import Floats, ParameterError, check_number
+from ..core import Floats, ParameterError, check_number, described_error
 from ..materials import HIGHEST_ALPHA, Bodies, Cover, Pair, Prony, lock_array, total_series
 from .cover_rows import cover_rows
 from .law_rows import CoupledRows, Rows, evaluate_by_modes, refuse_distant_times, row_range
@@ -253,6 +253,24 @@ class LawTable:
         if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
         return lock_array(fit_unsteady(self.material, table, self.e0))
+
+    def pair_with(self, base: Any, plane: Any) -> Pair:
+        """Return the bodies of the law in SI units, which it has in ``pair``, in ``plane``.
+
+        base, plane: of a cylinder to which the law is given: None, and "strain" or "stress".
+        Raises ParameterError for a dimensionless law, a base beside it, and another plane than that
+        of a law of two different bodies.
+        """
+        if self.pair is None:
+            allowed = "the law of a Material, in SI units"
+            raise described_error("material", "is a dimensionless law", allowed)
+        if base is not None:
+            allowed = "left out: the law already contains both bodies"
+            raise described_error("base", "is given", allowed)
+        if plane != self.pair.plane and not self.pair.like:
+            allowed = f"{self.pair.plane!r}, for which the law was computed"
+            raise ParameterError("plane", repr(plane), allowed)
+        return Pair(self.pair.cylinder, self.pair.base, plane)
 
     @cached_property
     def moment_of_speed_alone(self) -> bool:

@@ -20,7 +20,6 @@ from .checked_netcdf import read_law as read_law
 from .checked_netcdf import stated_errors as stated_errors
 from .importers import check_poisson as check_poisson
 from .material import Material as Material
-from .material import refuse_short_retardation as refuse_short_retardation
 from .material_toml import SECTIONS as SECTIONS
 from .material_toml import CreepSection as CreepSection
 from .material_toml import PronySection as PronySection
@@ -45,12 +44,17 @@ from .measured_data import vertical_factor as vertical_factor
 from .pair import Pair as Pair
 from .pair import Plane as Plane
 from .pair import Solid as Solid
+from .pair import contact_length as contact_length
+from .pair import describe_body as describe_body
 from .pair import effective_modulus as effective_modulus
+from .pair import layer_excess as layer_excess
+from .pair import local_coupling as local_coupling
 from .prony import Block as Block
 from .prony import Prony as Prony
-from .prony import lock_array as lock_array
 from .prony import series_of_alpha as series_of_alpha
 from .prony_forms import HIGHEST_ALPHA as HIGHEST_ALPHA
 from .prony_forms import LARGEST_TIME_RATIO as LARGEST_TIME_RATIO
 from .prony_forms import MOST_MODES as MOST_MODES
 from .prony_forms import Modes as Modes
+from .prony_forms import lock_array as lock_array
+from .prony_forms import refuse_short_retardation as refuse_short_retardation

@@ -256,13 +256,8 @@ class Bodies(OneOrMany):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         """Values that determine the pairs: bodies, share with its shape, Poisson's ratios."""
-        return (
-            self.cylinder,
-            self.base,
-            np.shape(self.share),
-            np.asarray(self.share).tobytes(),
-            self.poisson,
-        )
+        share = np.asarray(self.share)
+        return self.cylinder, self.base, share.shape, share.tobytes(), self.poisson
 
     def __repr__(self) -> str:
         """Return the call that makes the pair; of many pairs their number and those of modes."""
@@ -396,10 +391,11 @@ class Cover(Bodies):
         """
         if is_real(series):
             series = series_of_alpha(check_number("alpha", series, low=1.0, high=HIGHEST_ALPHA))
-        if not isinstance(series, Prony) or series.shape:
-            raise ParameterError(
-                "series", f"{series!r:.60}", "a Prony series of one material, or an alpha"
-            )
+        other = Prony.elastic() if other is None else other
+        for name, body, also in (("series", series, "an alpha"), ("other", other, "None")):
+            if not isinstance(body, Prony) or body.shape:
+                allowed = f"a Prony series of one material, or {also}"
+                raise ParameterError(name, f"{body!r:.60}", allowed)
         check_choice("on", on, "cylinder", "base")
         ratio = check_array("nu", nu, low=0.0, high=0.5)
         other_nu = check_number("other_nu", other_nu, low=0.0, high=0.5)
@@ -409,11 +405,6 @@ class Cover(Bodies):
             raise shape_error("thickness", given.shape, "a number, or one for each cover, (n,)")
         if ratio.shape not in ((), given.shape):
             raise shape_error("nu", ratio.shape, "a number, or one for each thickness, (n,)")
-        other = Prony.elastic() if other is None else other
-        if not isinstance(other, Prony) or other.shape:
-            raise ParameterError(
-                "other", f"{other!r:.60}", "a Prony series of one material, or None"
-            )
         if other_thickness is not None:
             other_thickness = read_only(self._check_other_thickness(other_thickness, given, part))
         bodies = (series, other) if on == "cylinder" else (other, series)

@@ -26,7 +26,7 @@ import numpy as np
 
 from .. import __version__
 from ..core import PAPER, Dataset, FileError, FilePath, ParameterError, read_sealed, seal_matches
-from .measured_data import Measured, shifts_as_toml, shifts_of_toml
+from .measured_data import WLF, Arrhenius, Measured
 from .prony import Prony
 
 # --- The file of a law ---
@@ -359,6 +359,19 @@ def material_as_dataset(material: Any) -> Dataset:
     )
 
 
+def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
+    """Return the shifts of a material that files hold as key -> value in TOML: wlf or arrhenius,
+    vertical_shift.
+
+    shift, vertical_shift: as in :class:`.material.Material`; a function is left out.
+    """
+    found = {} if vertical_shift != "entropic" else {"vertical_shift": '"entropic"'}
+    if isinstance(shift, WLF | Arrhenius):
+        numbers = ", ".join(f"{name} = {value!r}" for name, value in vars(shift).items())
+        found[type(shift).__name__.lower()] = f"{{ {numbers} }}"
+    return found
+
+
 def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
     """Read a file of :meth:`viscoroll.Material.to_netcdf`.
 
@@ -406,7 +419,10 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
                 *(numbers[name].tolist() for name in _ERRORS if name in numbers), strict=True
             )
             found["measured"] = Measured(**band, source=about["measured"], M_error=tuple(pairs))
-        found |= shifts_of_toml(about.get("shifts", ""))
+        found |= tomllib.loads(about.get("shifts", ""))
+        for name, kind in (("wlf", WLF), ("arrhenius", Arrhenius)):
+            if name in found:
+                found["shift"] = kind(**found.pop(name))
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
     except (ParameterError, KeyError, ValueError, OSError) as error:
         raise FileError(

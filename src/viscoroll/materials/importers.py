@@ -1,6 +1,6 @@
-"""Materials as finite element programs state them: constructors of :class:`Material`.
+"""Materials as finite element programs and files state them: constructors of :class:`Material`.
 
-All of these programs relax the shear modulus, G(t), and may relax the bulk modulus, K(t).  Where
+All of the programs relax the shear modulus, G(t), and may relax the bulk modulus, K(t).  Where
 the bulk terms are not given, Poisson's ratio is taken constant in time, so that E(t) = 2 (1 + nu)
 G(t) relaxes alike.  Where they are given and differ from those of shear, nu changes with time;
 :func:`plane_strain` keeps what a contact in plane strain feels.
@@ -9,13 +9,14 @@ G(t) relaxes alike.  Where they are given and differ from those of shear, nu cha
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from ..core import (
     SI,
     ArrayLike,
+    FilePath,
     Floats,
     NDArray,
     ParameterError,
@@ -40,7 +41,8 @@ _LEAST_POISSON = 0.2 - 1e-9
 
 
 class FromPrograms:
-    """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given.
+    """Constructors of :class:`Material`; in those of programs T_ref is 1 s, so that times in s are
+    kept as given.
 
     A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in
     kelvin.  So do bulk terms by which Poisson's ratio is below 0.2 at some time: they look like
@@ -319,6 +321,38 @@ class FromPrograms:
         return cls._from_moduli(
             rest, check_poisson(nu), G=strengths, tau=times, K=terms, more=more, K_inf=bulk
         )
+
+    @classmethod
+    def from_netcdf(cls, path: FilePath) -> Self:
+        """Read a file that :meth:`Material.to_netcdf` wrote, to the bit
+        (``tests/materials/test_material.py``).
+
+        Parameters
+        ----------
+        path : file; its SHA-256 is compared before anything is parsed.
+
+        Returns
+        -------
+        Material
+            Equal to the one that was written.
+
+        Raises
+        ------
+        FileError
+            A file that is missing, larger than 128 MiB, damaged in any byte, without the SHA-256 at
+            its end, or no material, or has values out of range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> steel = vr.Material.elastic(2.1e11, 0.3)
+        >>> steel.to_netcdf("steel.nc")
+        >>> vr.Material.from_netcdf("steel.nc") == steel
+        True
+        """
+        from .checked_netcdf import load_material
+
+        return load_material(path, cls)
 
     @classmethod
     def _from_fractions(

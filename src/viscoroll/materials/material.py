@@ -26,6 +26,7 @@ from ..core import (
 from .importers import FromPrograms, check_poisson
 from .measured_data import Measured, check_celsius, check_fields, relative_shift, vertical_factor
 from .prony import Prony
+from .prony_forms import refuse_short_retardation
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,7 @@ class Material(FromPrograms):
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at`
         starts there.  Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
     nu_instant : Poisson's ratio at t = 0, in (-1, 0.5], of a material imported with bulk terms
-        unlike those of shear;
-        None: nu is constant in time.  Only ``instant`` needs it.
+        unlike those of shear; None: nu is constant in time.  Only ``instant`` needs it.
     shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius
         that returns a_T; it is the default of :meth:`at`, and what :meth:`Cylinder.temperature`
         needs.  Default: none.
@@ -126,14 +126,10 @@ class Material(FromPrograms):
         if self.temperature is not None:
             object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
         if self.shift is not None:
-            _refuse_no_shift(
-                "shift", self.shift, "a WLF, an Arrhenius or a function of the temperature"
-            )
+            _refuse_no_shift("shift", self.shift, "a WLF, an Arrhenius")
         vertical = self.vertical_shift
         if not (isinstance(vertical, str | None) and vertical in (None, "entropic")):
-            _refuse_no_shift(
-                "vertical_shift", vertical, "'entropic' or a function of the temperature"
-            )
+            _refuse_no_shift("vertical_shift", vertical, "'entropic'")
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -303,16 +299,15 @@ class Material(FromPrograms):
         True
         """
         shift = self.shift if shift is None else shift
-        _refuse_no_shift("shift", shift, "a WLF, an Arrhenius or a function of the temperature")
+        _refuse_no_shift("shift", shift, "a WLF, an Arrhenius")
         assert shift is not None
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
                 f"temperature is an array of shape {given.shape}, but a material has one "
-                "temperature: make "
-                "a list, [rubber.at(T, shift) for T in temperatures], or give the temperatures to "
-                "a run file as a "
-                "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
+                "temperature: make a list, [rubber.at(T, shift) for T in temperatures], or give "
+                "the temperatures to a run file as a column or a distribution, [material] "
+                "temperature = ... (docs/ensembles.md)"
             )
             raise ParameterError("temperature", given.shape, "one number", sentence)
         temperature = check_celsius("temperature", float(given))
@@ -562,47 +557,11 @@ class Material(FromPrograms):
 
         write_dataset(self.to_xarray(), path, sealed=True)
 
-    @classmethod
-    def from_netcdf(cls, path: FilePath) -> Material:
-        """Read a file of :meth:`to_netcdf`, to the bit (``tests/materials/test_material.py``).
-
-        Parameters
-        ----------
-        path : file; its SHA-256 is compared before anything is parsed.
-
-        Returns
-        -------
-        Material
-            Equal to the one that was written.
-
-        Raises
-        ------
-        FileError
-            A file that is missing, larger than 128 MiB, damaged in any byte, without the SHA-256 at
-            its end, or no material, or has values out of range.
-
-        Examples
-        --------
-        >>> import viscoroll as vr
-        >>> steel = vr.Material.elastic(2.1e11, 0.3)
-        >>> steel.to_netcdf("steel.nc")
-        >>> vr.Material.from_netcdf("steel.nc") == steel
-        True
-        """
-        from .checked_netcdf import load_material
-
-        return load_material(path, cls)
-
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
-        """Return storage and loss modulus divided by E.
+        """Return storage and loss modulus divided by E, (E'/E, E''/E), (1, 0) of an elastic body.
 
-        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation
-        time that overflows
-            is taken as infinite.
-        Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an
-        elastic and of a rigid body.
-        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of
-        another dimension.
+        omega: as in :meth:`storage`, of which result and errors are; a product of omega and a
+            relaxation time that overflows is taken as infinite.
         """
         with np.errstate(over="ignore"):
             product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (
@@ -631,25 +590,9 @@ class Material(FromPrograms):
 
 
 def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
-    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in
-    words ``allowed``.
+    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called; the
+    words ``allowed`` say what is allowed beside a function.
     """
     if not callable(shift) or isinstance(shift, type):
+        allowed = f"{allowed} or a function of the temperature"
         raise ParameterError(name, f"{shift!r:.60}", allowed)
-
-
-def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
-    """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are
-    allowed.
-
-    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that
-    broadcast; nothing else is
-        checked, and NaN is no fault.
-    The error states, of the elements at fault, the T_epsilon and T_sigma of that with the longest
-    T_sigma (of equal ones the first).
-    """
-    slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
-    short = fast > slow
-    if short.any():
-        at = int(np.argmax(np.where(short, fast, 0.0)))
-        raise ParameterError("T_epsilon", slow.flat[at], f">= T_sigma = {fast.flat[at]}")

@@ -24,9 +24,9 @@ from ..core import (
     read_toml,
     section_error,
 )
-from .checked_netcdf import SUFFIX, is_law, read_law
+from .checked_netcdf import SUFFIX, is_law, read_law, shifts_as_toml
 from .material import Material
-from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift, shifts_as_toml
+from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift
 from .prony import Prony
 
 #: sections of a file that describe a body

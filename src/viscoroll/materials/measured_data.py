@@ -9,7 +9,6 @@ multiplies all moduli in the same way.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -215,20 +214,13 @@ class ShiftFactors:
     T0: float
 
     def __call__(self, temperature: float) -> float:
-        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
-
-        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is
-        converted.
-        Raises ParameterError and warns as the class states.
-        """
+        """Return a_T as :meth:`_ShiftLaw.__call__` does, with the errors that the class states."""
         found = check_celsius("temperature", temperature)
         low = self.temperature[0]
         high = self.temperature[-1]
         if not low - NEAR <= found <= high + NEAR:
-            allowed = (
-                f"within [{low}, {high}], where factors were found; beyond them use wlf() "
-                "or arrhenius()"
-            )
+            allowed = f"within [{low}, {high}], where factors were found"
+            allowed += "; beyond them use wlf() or arrhenius()"
             raise ParameterError("temperature", temperature, allowed)
         if low == high:
             return self.a_T[0]
@@ -365,27 +357,13 @@ class ShiftFactors:
 def check_celsius(name: str, temperature: Any) -> float:
     """Return a temperature as a number of degrees Celsius, and warn of one that looks like kelvin.
 
-    Parameters
-    ----------
-    name : name of the parameter, for the error and the warning.
-    temperature : number of degrees Celsius, or a value with a unit of temperature, which is
+    name: name of the parameter, for the error and the warning.
+    temperature: number of degrees Celsius, or a value with a unit of temperature, which is
         converted; above absolute zero.
-
-    Returns
-    -------
-    float
-        Degrees Celsius; also where it warns.
-
-    Raises
-    ------
-    ParameterError
-        A value that is no single finite number above -273.15.
-
-    Warns
-    -----
-    ModelWarning
-        A temperature outside :data:`USUAL_RANGE`, -150 to 200.  The text contains no value, so that
-        Python shows it once for each line of a program.
+    Returns a float, degrees Celsius; also where it warns.
+    Raises ParameterError for a value that is no single finite number above -273.15.
+    Warns with ModelWarning outside :data:`USUAL_RANGE`, -150 to 200.  The text contains no value,
+    so that Python shows it once for each line of a program.
     """
     found = check_number(name, temperature, unit="degC", above=ABSOLUTE_ZERO)
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
@@ -408,23 +386,13 @@ def relative_shift(
     Arrhenius keep their form when they are converted to another (J. D. Ferry, Viscoelastic
     Properties of Polymers, 3rd ed., 1980, Ch. 11).
 
-    Parameters
-    ----------
-    shift : function of a temperature in degrees Celsius that returns a_T, a number, dimensionless,
+    shift: function of a temperature in degrees Celsius that returns a_T, a number, dimensionless,
         > 0.
-    temperature : degrees Celsius; None: the temperature at which the shift is 1.
-    reference : degrees Celsius; None likewise.
-
-    Returns
-    -------
-    float
-        The ratio, dimensionless, > 0; 1.0 if both temperatures are None.
-
-    Raises
-    ------
-    ParameterError
-        A temperature that the shift does not allow; a shift that returns no finite positive number;
-        a ratio that no double holds.  Other exceptions of the shift, and its warnings, pass.
+    temperature, reference: degrees Celsius; None: the temperature at which the shift is 1.
+    Returns the ratio, a float, dimensionless, > 0; 1.0 if both temperatures are None.
+    Raises ParameterError for a temperature that the shift does not allow, a shift that returns no
+    finite positive number, and a ratio that no double holds.  Other exceptions of the shift, and
+    its warnings, pass.
     """
     factor, unit = (
         1.0 if at is None else check_number("a_T", shift(at), above=0.0)
@@ -437,23 +405,14 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
     """Return the ratio of moduli at a temperature to those at a reference,
     b_T(temperature)/b_T(reference).
 
-    Parameters
-    ----------
-    shift : a function of a temperature in degrees Celsius that returns b_T, a number,
-        dimensionless, > 0; "entropic": b_T is the absolute temperature, as for an ideal network;
-        None: moduli do not depend on the temperature.
-    temperature, reference : degrees Celsius; a reference of None is allowed only without a vertical
+    shift: a function of a temperature in degrees Celsius that returns b_T, a number, dimensionless,
+        > 0; "entropic": b_T is the absolute temperature, as for an ideal network; None: moduli do
+        not depend on the temperature.
+    temperature, reference: degrees Celsius; a reference of None is allowed only without a vertical
         shift.
-
-    Returns
-    -------
-    float
-        The ratio, dimensionless, > 0; 1.0 for None.
-
-    Raises
-    ------
-    ParameterError
-        A reference of None, or a shift that returns no finite positive number.
+    Returns the ratio, a float, dimensionless, > 0; 1.0 for None.
+    Raises ParameterError for a reference of None, and a shift that returns no finite positive
+    number.
     """
     if shift is None:
         return 1.0
@@ -467,44 +426,14 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
     return factor / unit
 
 
-def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
-    """Return the shifts of a material that files hold as key -> value in TOML: wlf or arrhenius,
-    vertical_shift.
-
-    shift, vertical_shift: as in :class:`.material.Material`; a function is left out.
-    """
-    found = {} if vertical_shift != "entropic" else {"vertical_shift": '"entropic"'}
-    if isinstance(shift, WLF | Arrhenius):
-        numbers = ", ".join(f"{name} = {value!r}" for name, value in vars(shift).items())
-        found[type(shift).__name__.lower()] = f"{{ {numbers} }}"
-    return found
-
-
-def shifts_of_toml(text: str) -> dict[str, Any]:
-    """Return the shifts of a material that a file holds, as parameters of the material.
-
-    text: lines of TOML with the keys of :func:`shifts_as_toml`; "" without shifts.
-    Returns a dict with "shift", a :class:`WLF` or :class:`Arrhenius`, and "vertical_shift", those
-    that the text has.
-    """
-    found = tomllib.loads(text)
-    for name, kind in (("wlf", WLF), ("arrhenius", Arrhenius)):
-        if name in found:
-            found["shift"] = kind(**found.pop(name))
-    return found
-
-
 def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
     """Check that fields of a frozen dataclass are numbers above lower bounds, and replace them by
     floats in their unit.
 
-    instance: the dataclass, whose fields are changed in place, one after another; at an error those
-        before it are changed.
-    unit: unit of all these fields, as "rad s-1", or an object that has units by name, as SI
-    (default).
+    instance: the dataclass, whose fields are changed in place, one after another up to an error.
+    unit: unit of all these fields, as "rad s-1", or an object with units by name, as SI (default).
     lows: lower bound of each field by name, in that unit; the number must be larger.
-    Raises ParameterError for the first field that is no such number (also None, NaN, an array), or
-    is infinite.
+    Raises ParameterError for the first field that is no such finite number (also None, an array).
     """
     for name, low in lows.items():
         object.__setattr__(

@@ -2,7 +2,8 @@
 
 Compliances are added: 2/E' = 1/E'_1 + 1/E'_2, E'_k = pi E_k/(1 - nu_k^2) (Sect. 3.1), and each body
 creeps in proportion to its part of them.  Shear and pressure do not couple where Dundurs' constant
-beta_D is 0 at all times.
+beta_D is 0 at all times.  Layers and half-spaces of one Poisson's ratio differ by
+:func:`layer_excess`.
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..core import ParameterError, described_error
+from ..core import Floats, ParameterError, broadcast_shape, described_error, format_value
 from .bodies import Bodies, Cover
 from .material import Material
 from .prony import Prony
 
 Plane = Literal["strain", "stress"]
+#: largest relative difference of two thicknesses divided by l0 that count as the same
+_SAME_THICKNESS = 1e-9
 
 
 class Solid(NamedTuple):
@@ -250,6 +253,45 @@ class Pair:
             )
         return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
+    def refuse_thick_layer(self, R: Any) -> None:
+        """Raise ParameterError where a layer on the cylinder is thicker than R, as one whose
+        thickness is in mm.
+
+        R: radius, m, a number or (n,), which a thickness may be equal to.
+        Raises ParameterError also where its shape does not broadcast with that of R.
+        """
+        thickness = self.cylinder.thickness
+        if thickness is None:
+            return
+        broadcast_shape(thickness=thickness, R=R)
+        if (np.asarray(thickness) > R).any():
+            found = f"of the layer on the cylinder is {format_value(thickness)} m"
+            raise described_error("thickness", found, f"at most R = {format_value(R)} m")
+
+    def refuse_other_cover(self, cover: Any, l0: Any) -> None:
+        """Raise ParameterError where the law of a layer is that of another load or radius, and for
+        several cylinders.
+
+        cover: :class:`Cover` of the law, which holds for one thickness divided by l0; those that
+            agree to 1e-9, relative, count as the same.
+        l0: as in :meth:`cover`; it follows from load and R.
+        """
+        own = self.cover(l0)
+        if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
+            found = f"is the law of a layer with thickness/l0 = {cover.thickness:.6g}"
+            allowed = f"the law for {format_value(own.thickness)}, which follows from load and R"
+            raise described_error("material", found, allowed)
+
+    def refuse_coupled_ratios(self, law: Prony | Bodies | Cover, limit: float) -> None:
+        """Raise ParameterError where half-spaces with an array of nu need the coupled solution.
+
+        law: of the bodies; :class:`Bodies` have no Poisson's ratios where one of them is an array.
+        limit: Dundurs' constant up to which bodies count as uncoupled, dimensionless.
+        """
+        if type(law) is Bodies and law.poisson is None and self.most_coupled > limit:
+            found = "is an array, and would need a table of the coupled solution for each value"
+            raise described_error("nu", found, "one number; or coupled=False, for the fast law")
+
     @cached_property
     def dundurs(self) -> tuple[Any, Any]:
         """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous
@@ -310,3 +352,57 @@ def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "stra
     largest = max(G_1, G_2)
     g_1, g_2 = (1.0 if G == largest else G / largest for G in (G_1, G_2))
     return (g_1 * (k_2 - 1.0) - g_2 * (k_1 - 1.0)) / (g_1 * (k_2 + 1.0) + g_2 * (k_1 + 1.0))
+
+
+def layer_excess(nu: float, u: Floats) -> Floats:
+    """Return what distinguishes a bonded layer from a half-space under a wave of traction.
+
+    nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
+    u: wave number times the thickness, > 0, (n,).
+    Returns L - 1, T - L, and C less :func:`local_coupling`, dimensionless, (3, n), without
+    cancellation.
+    """
+    # with D = kap (1 + e^2) + (4 u^2 + 1 + kap^2) e: L = (kap (1 - e^2) - 4 u e)/D, and T has + 4 u
+    # e; e = exp(-2 u) in place of hyperbolic functions, which overflow
+    kap = 3.0 - 4.0 * nu
+    e = np.exp(-2.0 * u)
+    denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
+    coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / (
+        (kap + 1.0) * denominator
+    ) - local_coupling(nu)
+    rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
+    return np.array([-e * rest / denominator, 8.0 * u * e / denominator, coupling])
+
+
+def local_coupling(nu: Any) -> Any:
+    """Return (1 - 2 nu)/(2 - 2 nu), by which shear tilts a half-space of Poisson's ratio ``nu``."""
+    return (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
+
+
+def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+    """Return the contact length at rest of half-spaces, l0 = sqrt(32 R P/E'), Sect. 3.1.
+
+    R: radius, m, > 0.
+    load: force per length P that presses the cylinder on the base, N/m, > 0.
+    E_prime: contact modulus E' (:attr:`Cylinder.E_prime`; of one material in plane strain pi E/(1 -
+    nu^2)), Pa, > 0.
+    Returns l0, m, in the broadcast shape of the arguments, which are numbers of numpy or arrays and
+    are not checked.
+    """
+    return np.sqrt(32.0 * R * load / E_prime)
+
+
+def describe_body(body: Any) -> str:
+    """Return a body in a few words for a printed report.
+
+    body: :class:`Material`, or the table of a law.
+    Returns, of a Material, its name, "rigid", or modulus, Poisson's ratio and number of modes, with
+    the thickness of a layer; of a table its ``repr``.
+    """
+    if not isinstance(body, Material):
+        return repr(body)
+    modes = f"{body.prony.E.size} mode{'s' * (body.prony.E.size != 1)}"
+    text = body.name or (
+        "rigid" if body.is_rigid else f"E = {body.E:g} Pa, nu = {body.nu:g}, {modes}"
+    )
+    return text if body.thickness is None else f"{text}, {body.thickness:g} m thick"

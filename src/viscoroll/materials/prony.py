@@ -35,6 +35,7 @@ from .prony_forms import (
     LONGEST_TIME,
     MOST_MODES,
     Modes,
+    lock_array,
     modes_of_creep,
     modes_of_relaxation,
 )
@@ -480,14 +481,8 @@ class Prony(OneOrMany):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         """Values that determine the series: the form in which it was given, modes and alpha."""
-        alpha = np.asarray(self.alpha).tobytes()
-        return (
-            self.by_creep,
-            self._strengths.shape,
-            self._strengths.tobytes(),
-            self._times.tobytes(),
-            alpha,
-        )
+        given = self._strengths, self._times, np.asarray(self.alpha)
+        return self.by_creep, given[0].shape, *(each.tobytes() for each in given)
 
     def __repr__(self) -> str:
         """Return the call that makes the series, with numbers to the bit; of many materials their
@@ -597,15 +592,3 @@ def _exact_sums(values: NDArray) -> Any:
     """
     rows = values.tolist()
     return math.fsum(rows) if values.ndim == 1 else np.array([math.fsum(row) for row in rows])
-
-
-def lock_array(values: Any) -> Any:
-    """Make an array read-only.
-
-    values: a contiguous array, which is locked itself and so read-only for the caller too; or
-        another one, of which a contiguous copy is made and locked.
-    Returns the array that was locked.  A scalar becomes an array (1,).
-    """
-    values = np.ascontiguousarray(values)
-    values.flags.writeable = False
-    return values

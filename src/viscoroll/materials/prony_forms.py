@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core import Floats, NDArray
+from ..core import ArrayLike, Floats, NDArray, ParameterError
 
 #: highest alpha: beyond 1e18 the 1/alpha is lost beside 1; at 1e12 the law is that of alpha ->
 #: infinity where alpha zeta is large
@@ -264,3 +264,32 @@ def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
     )
     per_b, per_a = (np.where(own, 1.0, size / each) for each in apart)
     return nearest / alpha * per_b.prod(axis=-1), nearest * alpha * per_a.prod(axis=-2)
+
+
+def lock_array(values: Any) -> Any:
+    """Make an array read-only.
+
+    values: a contiguous array, which is locked itself and so read-only for the caller too; or
+        another one, of which a contiguous copy is made and locked.
+    Returns the array that was locked.  A scalar becomes an array (1,).
+    """
+    values = np.ascontiguousarray(values)
+    values.flags.writeable = False
+    return values
+
+
+def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
+    """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are
+    allowed.
+
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that
+    broadcast; nothing else is
+        checked, and NaN is no fault.
+    The error states, of the elements at fault, the T_epsilon and T_sigma of that with the longest
+    T_sigma (of equal ones the first).
+    """
+    slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
+    short = fast > slow
+    if short.any():
+        at = int(np.argmax(np.where(short, fast, 0.0)))
+        raise ParameterError("T_epsilon", slow.flat[at], f">= T_sigma = {fast.flat[at]}")

@@ -2,7 +2,8 @@
 and checked and sorted, as series are fitted to them.
 
 A series is fitted to a :class:`Curve`, storage and loss modulus, or to a :class:`Relaxation`; both
-compute what one mode contributes to their columns.  :func:`kramers_kronig` examines whether storage
+compute what one mode contributes to their columns, of which :func:`misfits` of a :class:`Spectrum`
+are made.  :func:`kramers_kronig` examines whether storage
 and loss modulus can be of one material.
 """
 
@@ -27,6 +28,7 @@ from ..core import (
     shape_error,
     warn_of_model,
 )
+from ..materials import Prony
 
 # --- Measured moduli, checked and sorted ---
 
@@ -274,6 +276,93 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
         ratio[n] = curve.loss[n] / np.maximum(allowed, 0.0)
     finite = ratio[~np.isnan(ratio)]
     return KramersKronig(curve.omega, ratio, float(np.median(finite)) if finite.size else math.nan)
+
+
+# --- A spectrum beside measured moduli ---
+
+#: moduli to which a spectrum is fitted
+Data = Curve | Relaxation
+
+
+class Spectrum(NamedTuple):
+    """A discrete spectrum in the units of the data: long-time modulus and modes of a generalised
+    Maxwell solid.
+
+    E : long-time modulus, in the unit of the data.
+    strength : strength of each mode, in the unit of E, shape (modes,).
+    tau : time of each mode, s, descending, shape (modes,); modes may be 0.
+    """
+
+    E: float
+    strength: Floats
+    tau: Floats
+
+    def modulus(self, data: Data) -> Floats:
+        """Return the moduli of the spectrum at the frequencies or times of the data, in the unit of
+        E.
+
+        data : measured moduli, a :class:`Curve` or a :class:`Relaxation` at n points; only their
+            frequencies or times are used.
+        Returns shape (2, n), storage and loss, of a :class:`Curve`; (1, n) of relaxation.
+        """
+        return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
+
+
+def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
+    """Return the spectrum, in the units of the data, of a dimensionless series.
+
+    prony : :class:`Prony`, strengths divided by the long-time modulus, times over T_ref.
+    E : long-time modulus, in the unit of the data.
+    T_ref : unit of the times of the series, s.
+    Returns the :class:`Spectrum`, strengths in the unit of E and times in s, in the order of the
+    series.
+    """
+    return Spectrum(E, prony.E * E, prony.tau * T_ref)
+
+
+def relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
+    """Return the matrix of the least squares: responses of a constant and of modes, divided by the
+    measured moduli.
+
+    data : measured moduli, a :class:`Curve` (rows = 2, storage and loss) or a :class:`Relaxation`
+        (rows = 1), at n points.
+    constant : long-time modulus whose response is the first column, in the unit of the data; 1.0
+    for a unit response.
+    modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
+    Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
+    """
+    found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
+    found[..., 0] = np.multiply(constant, data.constant)[:, None]
+    found[..., 1:] = modes
+    found /= np.array(data[1:])[..., None]
+    return found.reshape(-1, found.shape[2])
+
+
+def residuals(data: Data, values: Floats) -> Floats:
+    """Return the relative errors of all moduli, one row after the other.
+
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`, ``rows`` of them at n points.
+    values : [long-time modulus, strengths, times], the first two in the unit of the data, times in
+    s; (1 + 2 modes,).
+    Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
+    """
+    # 1 + 2 modes numbers
+    count = values.size // 2
+    responses = data.responses(values[1 + count :])
+    return relative_columns(data, 1.0, responses) @ values[: 1 + count] - 1.0
+
+
+def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
+    """Return the misfit of each row of the data: the root mean square of its relative errors.
+
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+    spectrum : :class:`Spectrum`, the fit.
+    Returns dimensionless numbers: (storage, loss) of a :class:`Curve`,
+    (relaxation,) of relaxation.
+    """
+    errors = residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]]))
+    errors = errors.reshape(len(data.constant), -1)
+    return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
 
 
 # --- Storage and loss modulus of a dynamic mechanical analysis ---

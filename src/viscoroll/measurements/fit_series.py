@@ -25,10 +25,19 @@ from ..core import (
 )
 from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Prony, VerticalShift, check_celsius
 from .dma_reader import RelaxationModulus
-from .dynamic_moduli import Curve, DynamicModuli, Relaxation, data_of, kramers_kronig, thinned
+from .dynamic_moduli import (
+    Curve,
+    DynamicModuli,
+    Relaxation,
+    data_of,
+    kramers_kronig,
+    misfits,
+    spectrum_of,
+    thinned,
+)
 from .fit_results import Fit, Misfit, Mode, RelaxationFit
 from .master_curve import master_curve
-from .spectrum import fewest_modes, misfits, spectrum_of
+from .spectrum import fewest_modes
 
 # --- Fits of moduli of one set ---
 

@@ -87,19 +87,14 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
             of_curves = zip_longest(map(np.size, column), sizes, fillvalue=0)
             for n, (own, wanted) in enumerate(of_curves, 1):
                 if own != wanted:
-                    raise described_error(
-                        name, f"has {own} points in curve {n}", f"as many as omega, {wanted}"
-                    )
+                    problem = f"has {own} points in curve {n}"
+                    raise described_error(name, problem, f"as many as omega, {wanted}")
         if given.shape != (len(sizes),):
-            raise shape_error(
-                "temperature", given.shape, f"one for each of the {len(sizes)} curves"
-            )
+            allowed = f"one for each of the {len(sizes)} curves"
+            raise shape_error("temperature", given.shape, allowed)
         if 0 in sizes:
-            raise described_error(
-                "omega",
-                f"has no points for curve {sizes.index(0) + 1}",
-                "one frequency or more for each curve",
-            )
+            problem = f"has no points for curve {sizes.index(0) + 1}"
+            raise described_error("omega", problem, "one frequency or more for each curve")
         first = np.cumsum([0, *sizes[:-1]])
         return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
     flat = [np.asarray(column) for column in columns]
@@ -123,12 +118,8 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     first : index of the first point of each curve, each < n, (curves,), as in :func:`points_of`;
         None: each set counts as a curve, in the order in which their first points come.
     Returns the :class:`Sets`; several curves may be of one set.
-
-    Raises
-    ------
-    ParameterError
-        No points; a set whose temperatures span more than :data:`.dynamic_moduli.SAME_TEMPERATURE`,
-        1 K.
+    Raises ParameterError for no points, and a set whose temperatures span more than
+    :data:`.dynamic_moduli.SAME_TEMPERATURE`, 1 K.
     """
     if not temperature.size:
         raise described_error("temperature", "is empty", "one number for each point")
@@ -205,9 +196,8 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     factors = check_array("shift", shift)
     temperatures = sets.temperature
     if not (factors > 0.0).all():
-        raise ParameterError(
-            "shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms"
-        )
+        allowed = "> 0: factors a_T, not their logarithms"
+        raise ParameterError("shift", f"{factors.min():g}", allowed)
     if factors.shape != sets.of_curve.shape:
         allowed = (
             f"one factor for each of {sets.of_curve.size} temperatures, in the order of the curves"
@@ -217,9 +207,8 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     # of several curves of a set the last factor stays, with which all are compared
     found[sets.of_curve] = factors
     if (found[sets.of_curve] != factors).any():
-        raise described_error(
-            "shift", "has several factors for one temperature", "one factor for each temperature"
-        )
+        problem = "has several factors for one temperature"
+        raise described_error("shift", problem, "one factor for each temperature")
     if base is None:
         base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
     index = nearest(base, temperatures)
@@ -262,8 +251,7 @@ class Shifts(ShiftFactors):
 
     temperature : temperature of each curve, ascending, degrees Celsius, (curves,); the median of
     those of its points.
-    a_T : ratio of times at this temperature to those at the reference, by which frequencies are
-    multiplied, (curves,).
+    a_T : times at this temperature over those at the reference: factor of frequencies, (curves,).
     T0, reference : temperature of the master curve, degrees Celsius, at which a_T is 1; it need not
         be one of ``temperature``.
     mismatch : between each curve and its warmer neighbour, root mean square of the differences of
@@ -352,20 +340,14 @@ def master_curve(
     )
     base = None if reference is None else check_celsius("reference", reference)
     coldest = float(temperatures[0])
-    # relative to the coldest curve, as the reference may not be known yet; at the end to the
-    # reference
+    # relative to the coldest curve, as the reference may not be known yet
     if vertical_shift is not None:
-        b_T = np.array(
-            [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
-        )[sets.of_point]
-        whole = [whole[0], whole[1] / b_T, whole[2] / b_T]
+        b_T = [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
+        whole[1:] = [each / np.array(b_T)[sets.of_point] for each in whole[1:]]
     mismatch = freedom = np.full(temperatures.size - 1, math.nan)
     if callable(shift):
-        base = (
-            default_reference(temperatures, [getattr(shift, "T0", math.nan)])
-            if base is None
-            else base
-        )
+        if base is None:
+            base = default_reference(temperatures, [getattr(shift, "T0", math.nan)])
         factor = np.array([relative_shift(shift, T, base) for T in temperatures.tolist()])
     elif shift is not None:
         factor, base = listed_factors(shift, sets, base)
@@ -421,11 +403,9 @@ def master_curve(
 
 
 def undetermined_shifts(shifts: Shifts) -> list[str]:
-    """Return the pairs of neighbouring curves whose shift their overlap leaves open, in words for a
-    report.
+    """Return the pairs of neighbouring curves whose shift their overlap leaves open, in words.
 
-    shifts : :class:`Shifts`, shift factors of the curves, of which temperature and freedom are
-    read.
+    shifts : :class:`Shifts` of the curves, of which temperature and freedom are read.
     Returns a text for each pair whose ``freedom``, the decades over which its shift may be moved,
     is above :data:`LARGEST_FREEDOM`, one decade (1 itself and NaN are not), with both temperatures
     and these decades, coldest first; an empty list where there is none, as for factors that were
@@ -458,15 +438,14 @@ def _shifts_by_overlap(
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
         name = "moduli at {:g} and {:g} °C".format(*pair)
         if not alignment.mismatch <= _LARGEST_MISMATCH:
-            raise described_error(
-                name, "do not agree after any shift", "curves that overlap with their neighbours"
-            )
+            allowed = "curves that overlap with their neighbours"
+            raise described_error(name, "do not agree after any shift", allowed)
         if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
-            raise described_error(
-                name,
-                f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve",
-                "curves that overlap more: measure between these temperatures, or give shift=",
+            problem = (
+                f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve"
             )
+            allowed = "curves that overlap more: measure between these temperatures, or give shift="
+            raise described_error(name, problem, allowed)
     torn = [
         f"from {cold:g} to {warm:g} C"
         for alignment, (cold, warm) in zip(found, pairwise(temperatures), strict=True)
@@ -489,8 +468,7 @@ class _LogCurve:
     x : ln omega, ascending, each once, shape (n,).
     y : ln E' and, unless the shift is found on the storage modulus alone, ln E'', shape (n, 2) or
         (n, 1); the mean at repeated frequencies.
-    interpolate : the interpolant of y: a function of ln omega, (k,), that returns shape (k, 2) or
-    (k, 1).
+    interpolate : the interpolant of y: a function of ln omega, (k,), that returns y there.
     """
 
     def __init__(self, curve: Curve, on: str) -> None:
@@ -513,9 +491,8 @@ class _LogCurve:
             [np.bincount(which, np.log(column)) / count for column in columns], axis=1
         )
         if self.x.size < 2:
-            raise ParameterError(
-                "omega", f"{self.x.size} frequency at a temperature", "at least 2 at each"
-            )
+            found = f"{self.x.size} frequency at a temperature"
+            raise ParameterError("omega", found, "at least 2 at each")
         self.interpolate = (
             CubicSpline(self.x, self.y) if self.x.size > 3 else PchipInterpolator(self.x, self.y)
         )
@@ -525,10 +502,8 @@ class _Alignment(NamedTuple):
     """The shift that lays the warm curve on the cold one; the numbers are NaN where no shift leaves
     an overlap.
 
-    step : what is added to ln omega of the warm curve, signed; a factor a_T below 1 gives a step
-    below 0.
-    mismatch : root mean square difference of ln E' (and of ln E'', if it is kept) after the shift,
-    dimensionless.
+    step : what is added to ln omega of the warm curve; a factor a_T below 1 gives a step below 0.
+    mismatch : root mean square difference of ln E' (and of ln E'', if it is kept) after the shift.
     freedom : decades over which the shift may be moved before the mismatch of a modulus rises by
         :data:`_EQUALLY_GOOD`.
     at_end : whether the shift is the first or last that leaves an overlap.
@@ -561,9 +536,7 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     from scipy.optimize import minimize_scalar
 
     def cost(squares: Floats) -> Floats:
-        """Return the logarithm of the product of mismatches, from mean squares of the moduli, (...,
-        moduli).
-        """
+        """Return the log of the product of mismatches, from mean ``squares``, (..., moduli)."""
         return np.log(squares + _FLOOR**2).sum(axis=-1)
 
     low = cold.x[0] - warm.x[-1]
@@ -574,9 +547,7 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     steps = steps[inside]
     squares = squares[inside]
     if not steps.size:
-        return _Alignment(
-            step=math.nan, mismatch=math.nan, freedom=math.nan, at_end=False, disagree=False
-        )
+        return _Alignment(math.nan, math.nan, math.nan, at_end=False, disagree=False)
     best = int(np.argmin(cost(squares)))
     around = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
     step = minimize_scalar(
@@ -610,8 +581,7 @@ def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> Floats:
     against the other's interpolant.
 
     step : what is added to ln omega of the warm curve, signed.
-    cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature, both with the
-    same moduli.
+    cold, warm : :class:`_LogCurve` of the lower and of the higher temperature, of the same moduli.
     Returns the mean of the squared differences of ln E' (and of ln E'', if it is kept),
     dimensionless, (moduli,); NaN where they overlap by less than 15 % of the shorter range in ln
     omega, or with fewer than three points of both together.

@@ -37,13 +37,8 @@ ROLLING = "rolling"
 #: unknowns of a record
 OF_RECORDS: tuple[str, ...] = ("V0", "omega0", "t0")
 #: number of a record -> its lower bound
-_NUMBERS = {
-    "load": 0.0,
-    "m": 0.0,
-    "temperature": ABSOLUTE_ZERO,
-    "V0": -math.inf,
-    "omega0": -math.inf,
-}
+_NUMBERS = {"load": 0.0, "m": 0.0, "temperature": ABSOLUTE_ZERO}
+_NUMBERS |= {"V0": -math.inf, "omega0": -math.inf}
 #: name -> initial value, and range (of t0 as an array of two) where the record leaves it open
 InitialValues = dict[str, tuple[float, tuple[float, float] | None]]
 #: relative tolerance of a free motion
@@ -120,21 +115,18 @@ class Record:
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
             raise shape_error(self.label(self.QUANTITIES[0]), shape, "one value for each point")
         if 0 in shape:
-            raise described_error(
-                self.label(self.COORDINATES[0]), "is empty", "at least one number"
-            )
+            first = self.label(self.COORDINATES[0])
+            raise described_error(first, "is empty", "at least one number")
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
         # by ``vars``, as the class is frozen
         vars(self).update(whole, labels=labels, sigma=sigmas)
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
-            if value is not None and not (
-                name == "omega0" and isinstance(value, str) and value == ROLLING
-            ):
-                vars(self)[name] = check_number(
-                    self.label(name), value, unit=self.unit(name), above=low
-                )
+            rolling = name == "omega0" and isinstance(value, str) and value == ROLLING
+            if value is not None and not rolling:
+                label = self.label(name)
+                vars(self)[name] = check_number(label, value, unit=self.unit(name), above=low)
 
     @staticmethod
     def unit(name: str) -> str:
@@ -195,11 +187,8 @@ class Record:
         given = {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
             if len(self.measured) > 1:
-                raise ParameterError(
-                    self.label("sigma"),
-                    f"{given!r:.40}",
-                    f"one for each quantity, as {{{': ..., '.join(map(repr, among))}: ...}}",
-                )
+                allowed = f"one for each quantity, as {{{': ..., '.join(map(repr, among))}: ...}}"
+                raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
         check_names(self.label("sigma"), given, among, "a quantity of it")
         return {name: value for name, value in given.items() if value is not None}
@@ -214,11 +203,8 @@ class Record:
         """Inputs of the cylinder that the record replaces: "load" in N/m and "m" in kg/m -> number;
         {} where it has neither.
         """
-        return {
-            name: value
-            for name in ("load", "m")
-            if (value := getattr(self, name, None)) is not None
-        }
+        numbers = {name: getattr(self, name, None) for name in ("load", "m")}
+        return {name: value for name, value in numbers.items() if value is not None}
 
     def initial_values(self, R: float) -> InitialValues:
         """Return the start values V0, omega0 and t0 of the motion, which a fit may need;
@@ -244,8 +230,7 @@ class Record:
         return {}
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Return all :attr:`QUANTITIES` of the record as the model predicts them; each kind of
-        record does this itself.
+        """Return all :attr:`QUANTITIES` as the model predicts them, which each kind does itself.
 
         cylinder : :class:`Cylinder` with the present values of the unknowns, which has the load,
             the mass and the temperature of this record already.
@@ -271,8 +256,7 @@ class Resistance(Record):
     F : pulling forces M/R, N/m, of the sign of M, in place of M or beside it.  A record without
         both is a plan.
     sigma : standard deviation of M or F, in its unit, a number or one for each point; of both {"M":
-        ..., "F": ...}.
-        None: estimated from the residuals.
+        ..., "F": ...}.  None: estimated from the residuals.
     load : load of this record, N/m; None: the cylinder's.
     temperature : temperature of this record, degrees Celsius, see ``shift`` of
         :func:`viscoroll.identify`; None: that of the cylinder's materials.
@@ -305,18 +289,15 @@ class Resistance(Record):
     def __post_init__(self) -> None:
         """Check the sign of M and F beside all that every record checks.
 
-        Raises ParameterError as :meth:`Record.__post_init__` does, and where all values of M or F
-        have the sign that is opposite to V, by more than three sigma where it is given.
+        Raises ParameterError as :meth:`Record.__post_init__` does, and as the class states.
         """
         super().__post_init__()
         for name in self.measured:
             noise = 0.0 if self.sigma[name] is None else 3.0 * self.sigma[name]
             if (getattr(self, name) * np.sign(self.V) < -noise).all():
-                raise described_error(
-                    self.label(name),
-                    "has at all points the sign opposite to V",
-                    "of the sign of V, as it resists: reverse its sign",
-                )
+                problem = "has at all points the sign opposite to V"
+                allowed = "of the sign of V, as it resists: reverse its sign"
+                raise described_error(self.label(name), problem, allowed)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict rolling moment and pulling force of free rolling, the torque of the bearing
@@ -362,11 +343,8 @@ class Resistance(Record):
         V = np.asarray(self.V)
         brake = values.get("brake", 0.0)
         drag = values.get("drag", 0.0)
-        M = (
-            cylinder.contact(V, delta=0.0, fields="M").M
-            + np.sign(V) * brake
-            + drag * V / cylinder.R
-        )
+        M = cylinder.contact(V, delta=0.0, fields="M").M
+        M = M + np.sign(V) * brake + drag * V / cylinder.R
         return {"M": M, "F": M / cylinder.R}
 
 
@@ -498,11 +476,8 @@ class Coastdown(Record):
             raise shape_error(self.label("t"), t.shape, "a vector, in ascending order")
         if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
             n = falls[0]
-            raise ParameterError(
-                self.label("t"),
-                f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}",
-                "a vector, in ascending order",
-            )
+            found = f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}"
+            raise ParameterError(self.label("t"), found, "a vector, in ascending order")
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
             raise ParameterError(self.label("t0"), self.t0, "a number, or (low, high)")
@@ -521,12 +496,12 @@ class Coastdown(Record):
             Name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high)
             where the record leaves it open, None where it gives it), in s, m/s and rad/s.  The
             (low, high) of V0 and omega0 is a tuple, that of t0 an array, (2,), whose order is not
-            checked here.  A t0 that is open starts at 0 limited to its
-            range: low where low > 0, high where high < 0.  V0 and omega0 that are open start at the
-            first measured value, within the largest magnitude measured to either side.  Where V was
-            not measured, V0 starts at R times the first omega, if omega0 is "rolling" and omega was
-            measured, else at the slope of the first tenth of x (at least three points, or all),
-            within its magnitude to either side.
+            checked here.  A t0 that is open starts at 0 limited to its range: low where low > 0,
+            high where high < 0.  V0 and omega0 that are open start at the first measured value,
+            within the largest magnitude measured to either side.  Where V was not measured, V0
+            starts at R times the first omega, if omega0 is "rolling" and omega was measured, else
+            at the slope of the first tenth of x (at least three points, or all), within its
+            magnitude to either side.
 
         Raises
         ------
@@ -551,18 +526,13 @@ class Coastdown(Record):
 
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
         """Estimate the speed or the angular velocity at the release of the cylinder from the first
-        data.
-
-        It is the first measured value of V or omega.  Where V was not measured, V0 is R times the
-        first omega, if ``omega0`` is "rolling" and omega was measured, else the slope of a straight
-        line through the first tenth of x, at least three points, or all if there are fewer.
+        data, as :meth:`initial_values` states.
 
         name : "V0" or "omega0".
         R : radius of the cylinder, m; used only to make V of omega.
-        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s.  The range extends
-        to either side of the speed by the largest |V|, R |omega| or |omega| that was measured, and
-        of a slope of x by its absolute value; it has no width where these are 0.  Where the first
-        times are all one, the slope is that of least norm, with a RankWarning of numpy.
+        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s; the range has no
+        width where all data are 0.  Where the first times are all one, the slope is that of least
+        norm, with a RankWarning of numpy.
         Raises ParameterError where none of these was measured.
         """
         data: Any = self.V if name == "V0" else self.omega

@@ -61,8 +61,7 @@ class Profile(NamedTuple):
         ranges.
     limited_by : two lists, one for each end, of the names of unknowns whose range, not the data,
         limits that end; [] of an open side, and where the data alone limit it.
-    pieces : whether another branch of the fit continued the interval; chi2 may then be above the
-    bound inside it.
+    pieces : whether another branch continued the interval, inside which chi2 may exceed the bound.
     best : :class:`.least_squares.Minimum`, the point with the least chi2 that was met, perhaps
     below that of the best fit.
     within : coordinates of all points met whose chi2 is at most the bound above that of the best
@@ -334,8 +333,7 @@ class Likelihood:
         hundredths where it is so with none.
 
         which : indices of the unknowns among all, ascending.
-        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0:
-        within it points fit.
+        delta_chi2 : bound of the rise of chi2 within which points fit, dimensionless, > 0.
         Yields as many combinations as ``which`` has indices, the best determined first: powers of
         the coordinates, shape (unknowns,), that of largest absolute value 1, and those of unknowns
         outside of ``which`` 0.
@@ -385,10 +383,8 @@ class ProfileWalk:
     def __init__(self, likelihood: Likelihood, powers: Floats, delta_chi2: float) -> None:
         """Begin at the best minimum.  Nothing is minimised yet; :meth:`profile` does that.
 
-        likelihood : :class:`Likelihood`, chi2 about the best minimum.
-        powers : powers of the combination whose profile is computed, (unknowns,), not all 0.
-        delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        All attributes of the class are set; ``visited`` holds the best minimum alone.
+        likelihood, powers, delta_chi2 : as of the class, whose attributes are all set; ``visited``
+            holds the best minimum alone.
         """
         self.likelihood = likelihood
         self.problem = likelihood.problem
@@ -424,12 +420,10 @@ class ProfileWalk:
         """Return the minimum of chi2 with the combination fixed, and add it to ``visited``.
 
         d : distance of the combination from that at the best minimum, signed.
-        u : coordinates from which the search starts, (unknowns,); they are moved to that distance
-        first.
+        u : coordinates of the start, (unknowns,); they are moved to that distance first.
         Returns the :class:`.least_squares.Minimum`, within the ranges, to a relative tolerance of
         1e-5, or the best point that 30 evaluations found; its distance may differ from d where the
-        ranges
-        do not allow d.
+        ranges do not allow d.
         """
         self.visited.append(
             self.likelihood.minimize(self.shift_to(d, u).tobytes(), self.powers.tobytes())
@@ -472,13 +466,8 @@ class ProfileWalk:
                 d, last = self.find_end(reach, lower[-1])
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
             limits.append([] if d is None else self.limiting_bounds(last.u))
-        within = np.array(
-            [
-                minimum.u
-                for minimum in self.visited
-                if minimum.chi2 - self.best.chi2 <= self.delta_chi2
-            ]
-        )
+        best = self.best.chi2
+        within = np.array([each.u for each in self.visited if each.chi2 - best <= self.delta_chi2])
         return Profile(
             ends=ends,
             limited_by=limits,
@@ -508,11 +497,9 @@ class ProfileWalk:
         step = min(goal * self.sd, _FIRST_STEP)
         found = {d: start}
 
-        def excess(
-            d: float,
-        ) -> float:  # the root of the rise is proportional to the distance near the best
+        def excess(d: float) -> float:
             """Return the root of the rise of chi2 at the distance d minus the root of the bound,
-            dimensionless.
+            dimensionless; near the best it is proportional to the distance.
 
             A minimum that is not in ``found`` yet is computed and added to ``found``; its search
             starts on the line through the two nearest ones, or from the only one.  A rise below 0

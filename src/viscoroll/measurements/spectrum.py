@@ -11,10 +11,9 @@ modes are left out or merged one by one.  A row of the data is one measured modu
 :class:`.dynamic_moduli.Curve` has two, storage and loss, a :class:`.dynamic_moduli.Relaxation`
 one.  The misfit of a row is the root mean square of its relative errors, dimensionless.
 
-**Accuracy of a fit**: rolling resistance by all spectra that meet the data as well
-(:func:`admissible_spectra`).  Data over a limited band do not determine a spectrum.  For each
-speed the non-negative spectra are sought by which M is smallest and largest, among those that meet
-the data as well as the fit does; the fit is one of them, and so is the true spectrum, but for
+**Accuracy of a fit** (:func:`admissible_spectra`): data over a limited band do not determine a
+spectrum.  For each speed the non-negative spectra are sought by which M is smallest and largest,
+among those that meet the data as well as the fit does; the true spectrum is one of them, but for
 noise.  How far M is off for rubbers that are known is measured by
 ``pipeline/evidence/measure/fits.py``.
 
@@ -36,7 +35,7 @@ from ..contact_mechanics.contact import contact
 from ..core import Floats, described_error
 from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Measured, Prony
 from ..rollers import Scene
-from .dynamic_moduli import Curve, Relaxation
+from .dynamic_moduli import Data, Spectrum, misfits, relative_columns, residuals
 
 # --- Least squares of measured moduli by a discrete spectrum ---
 
@@ -46,93 +45,6 @@ _NOTHING = 1e-12
 #: none
 FLOOR = 0.01
 
-Data = Curve | Relaxation
-
-
-class Spectrum(NamedTuple):
-    """A discrete spectrum in the units of the data: long-time modulus and modes of a generalised
-    Maxwell solid.
-
-    E : long-time modulus, in the unit of the data.
-    strength : strength of each mode, in the unit of E, shape (modes,).
-    tau : time of each mode, s, descending, shape (modes,); modes may be 0.
-    """
-
-    E: float
-    strength: Floats
-    tau: Floats
-
-    def modulus(self, data: Data) -> Floats:
-        """Return the moduli of the spectrum at the frequencies or times of the data, in the unit of
-        E.
-
-        data : measured moduli, a :class:`Curve` or a :class:`Relaxation` at n points; only their
-            frequencies or times are used.
-        Returns shape (2, n), storage and loss, of a :class:`.dynamic_moduli.Curve`; (1, n) of
-        relaxation.
-        """
-        return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
-
-
-def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
-    """Return the spectrum, in the units of the data, of a dimensionless series.
-
-    prony : :class:`Prony`, strengths divided by the long-time modulus, times over T_ref.
-    E : long-time modulus, in the unit of the data.
-    T_ref : unit of the times of the series, s.
-    Returns the :class:`Spectrum`, strengths in the unit of E and times in s, in the order of the
-    series.
-    """
-    return Spectrum(E, prony.E * E, prony.tau * T_ref)
-
-
-def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
-    """Return the matrix of the least squares: responses of a constant and of modes, divided by the
-    measured moduli.
-
-    data : measured moduli, a :class:`Curve` (rows = 2, storage and loss) or a :class:`Relaxation`
-        (rows = 1), at n points.
-    constant : long-time modulus whose response is the first column, in the unit of the data; 1.0
-    for a unit response.
-    modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
-    Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
-    """
-    found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
-    found[..., 0] = np.multiply(constant, data.constant)[:, None]
-    found[..., 1:] = modes
-    found /= np.array(data[1:])[..., None]
-    return found.reshape(-1, found.shape[2])
-
-
-def _residuals(data: Data, values: Floats) -> Floats:
-    """Return the relative errors of all moduli, one row after the other.
-
-    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`, ``rows`` of them at n points.
-    values : [long-time modulus, strengths, times], the first two in the unit of the data, times in
-    s; (1 + 2 modes,).
-    Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
-    """
-    # 1 + 2 modes numbers
-    count = values.size // 2
-    return (
-        _relative_columns(data, 1.0, data.responses(values[1 + count :])) @ values[: 1 + count]
-        - 1.0
-    )
-
-
-def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
-    """Return the misfit of each row of the data: the root mean square of its relative errors.
-
-    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, the fit.
-    Returns dimensionless numbers: (storage, loss) of a :class:`.dynamic_moduli.Curve`,
-    (relaxation,) of relaxation.
-    """
-    errors = _residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(
-        len(data.constant), -1
-    )
-    return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
-
 
 class LeastSquares:
     """Least squares of the relative errors of data by non-negative strengths on fixed times.
@@ -141,7 +53,7 @@ class LeastSquares:
     :data:`FLOOR` of the lowest storage or relaxation modulus, and the strengths, each times the
     norm of its column: (1 + modes,), dimensionless.
 
-    tau : times of the modes, s, (modes,), in the order given.
+    tau : times of the modes, s, (modes,).
     floor : least long-time modulus, in the unit of the data.
     size : norm of the column of each unknown, in the inverse of that unit, (1 + modes,).
     left, right : matrix, (residuals, 1 + modes), and right-hand side, (residuals,), dimensionless.
@@ -153,7 +65,7 @@ class LeastSquares:
         data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
         tau : times of the modes, s, > 0, (modes,).
         """
-        columns = _relative_columns(data, 1.0, data.responses(tau))
+        columns = relative_columns(data, 1.0, data.responses(tau))
         self.tau = tau
         self.floor = _least_modulus(data)
         self.size = np.sqrt((columns * columns).sum(axis=0))
@@ -165,17 +77,13 @@ class LeastSquares:
         """Return the unknowns, (1 + modes,), with the least sum of squares, of all rows and perhaps
         one more.
 
-        row, value : coefficients, (1 + modes,), and right-hand side of a further residual; None:
-        there is none.
+        row, value : coefficients, (1 + modes,), and right-hand side of a further residual, or None.
         Raises RuntimeError, from SciPy, where the iteration does not end in 100 (1 + modes) steps.
         """
         from scipy.optimize import nnls
 
-        left = self.left
-        right = self.right
-        if row is not None:
-            left = np.vstack([left, row])
-            right = np.append(right, value)
+        left = self.left if row is None else np.vstack([self.left, row])
+        right = self.right if row is None else np.append(self.right, value)
         found: Floats = nnls(left, right, maxiter=100 * self.size.size)[0]
         return found
 
@@ -207,11 +115,10 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     tau : times of modes, s, > 0, in any order, shape (modes,), which may be empty.
-    Returns the :class:`Spectrum`, its times descending, all strengths > 0; its long-time modulus is
-    at least :data:`FLOOR`, 1 %, of the lowest storage or relaxation modulus, and its number of
-    modes may be smaller than that of ``tau``, down to 0.
-    Raises RuntimeError, from SciPy, where the non-negative least squares do not end in 100 (1 +
-    modes) iterations.
+    Returns the :class:`Spectrum`, its times descending, all strengths > 0, with as many modes as
+    ``tau`` or fewer, down to 0; its long-time modulus is at least :data:`FLOOR`, 1 %, of the lowest
+    storage or relaxation modulus.
+    Raises RuntimeError as :meth:`LeastSquares.solve`.
     """
     problem = LeastSquares(data, tau)
     return problem.spectrum(problem.solve(), tau.size)
@@ -219,10 +126,7 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
 def has_plateau(data: Data, E: float) -> bool:
     """Return whether the data determine the long-time modulus of a fit, which is then above the
-    least that is allowed.
-
-    The least is 1 % of the lowest storage or relaxation modulus; above it means by more than 1e-4
-    of it.
+    least that is allowed, 1 % of the lowest storage or relaxation modulus, by more than 1e-4 of it.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     E : long-time modulus of a fit of the data, in their unit, as in :func:`on_times`.
@@ -234,11 +138,10 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     """Refine a spectrum by varying its times too, then fit the strengths on the times found.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, spectrum from which the search starts, with all strengths and its
-    E > 0.
+    spectrum : :class:`Spectrum` from which the search starts, with all strengths and its E > 0.
     ends : (shortest, longest) time that is allowed, s; times outside are moved to the ends.
-    calls : largest number of evaluations of the residuals, >= 1; when they are used up the best
-    times so far are taken.
+    calls : largest number of evaluations of the residuals, >= 1, after which the best times so far
+        are taken.
     Returns the refined :class:`Spectrum`, from which modes without strength are left out;
     ``spectrum`` itself if it has no modes.
     Raises RuntimeError as :func:`on_times` does.
@@ -254,9 +157,8 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     high[0] = np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
     # only the times are kept: strengths on given times have one best fit, which may leave modes out
-    return on_times(
-        data, np.exp(_minimize(data, start, low=low, high=high, calls=calls)[1 + count :])
-    )
+    found = _minimize(data, start, low=low, high=high, calls=calls)
+    return on_times(data, np.exp(found[1 + count :]))
 
 
 #: range of the logarithm of a strength about its start
@@ -280,9 +182,8 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     logs : start, logarithms of [long-time modulus, strengths, times], in the unit of the data and
-    s; (1 + 2 modes,).
-    low, high : bounds of the logarithms, of the same shape, perhaps infinite; a start outside is
-    moved to the bound.
+        s; (1 + 2 modes,).
+    low, high : their bounds, perhaps infinite; a start outside is moved to the bound.
     calls : largest number of evaluations of the residuals, >= 1; with 1 the start is returned.
     The iteration ends where the relative change of the sum in a step is at most 1e-14, and where
     each logarithm is at a bound beyond which the sum would decrease.
@@ -290,7 +191,7 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
     modes,), within the bounds.
     """
     logs = np.clip(logs, low, high)
-    errors = _residuals(data, np.exp(logs))
+    errors = residuals(data, np.exp(logs))
     slopes = _slopes(logs, data)
     damping = _DAMPING
     for _ in range(calls - 1):
@@ -305,7 +206,7 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
         step = np.zeros_like(logs)
         step[free] = np.linalg.solve(normal, downhill[free])
         step = np.clip(logs + step, low, high) - logs
-        found = _residuals(data, np.exp(logs + step))
+        found = residuals(data, np.exp(logs + step))
         before = errors @ errors
         gain = errors @ errors - found @ found
         if gain > 0.0:
@@ -321,12 +222,10 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
 
 
 def _normal_matrix(slopes: Floats) -> Floats:
-    """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads.
+    """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads,
+    whose start would take longer.
 
-    It keeps BLAS from starting threads, which would take longer than the product.
-
-    slopes : derivatives of the residuals, dimensionless, shape (residuals, unknowns); at least one
-    unknown.
+    slopes : derivatives of the residuals, dimensionless, shape (residuals, unknowns >= 1).
     Returns the product, dimensionless, shape (unknowns, unknowns), a new array.
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
@@ -342,7 +241,7 @@ def _slopes(logs: Floats, data: Data) -> Floats:
     logs : logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 +
     2 modes,).
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`, ``rows`` of them at n points.
-    Returns shape (rows n, 1 + 2 modes), dimensionless, in the order of :func:`_residuals` and of
+    Returns shape (rows n, 1 + 2 modes), dimensionless, in the order of :func:`.residuals` and of
     ``logs``.
     """
     values = np.exp(logs)
@@ -351,16 +250,12 @@ def _slopes(logs: Floats, data: Data) -> Floats:
     tau = values[1 + count :]
     responses = data.responses(tau)
     by_times = data.slopes(tau, responses) * strength
-    return _relative_columns(
-        data, values[0], np.concatenate([responses * strength, by_times], axis=2)
-    )
+    modes = np.concatenate([responses * strength, by_times], axis=2)
+    return relative_columns(data, values[0], modes)
 
 
 def _least_modulus(data: Data) -> float:
-    """Return the least long-time modulus that is allowed, in the unit of the data.
-
-    It is :data:`FLOOR` of the lowest storage or relaxation modulus of the ``data``.
-    """
+    """Return the least long-time modulus allowed: :data:`FLOOR` of the lowest one of the data."""
     return FLOOR * float(data[1].min())
 
 
@@ -394,22 +289,15 @@ def fewest_modes(
     reaches the target, good enough is a root of the sum of the squared misfits within 5 % of the
     least among the grids.
 
-    data : measured moduli, a :class:`.dynamic_moduli.Curve` or a
-    :class:`.dynamic_moduli.Relaxation`.
-    target : largest misfit of each row of the data, a root mean square of relative errors,
-    dimensionless, > 0.
+    data : measured moduli, a :class:`.dynamic_moduli.Curve` or :class:`.dynamic_moduli.Relaxation`.
+    target : largest misfit of each row, a root mean square of relative errors, dimensionless, > 0.
     modes : number of modes to fit, an int >= 1; the target then decides the returned flag alone.
         The spectrum has fewer where no grid has as many modes with a strength > 0, or where one is
         lost as another is left out.  None: as few as the target needs.
     Returns (the :class:`Spectrum`, times descending, which may have no mode; (shortest, longest
     time) of its grid, s, within which its times lie; whether every row has a misfit <= target).
-
-    Raises
-    ------
-    ParameterError
-        If no grid of times leaves a long-time modulus: the data are of a fluid.
-    RuntimeError
-        As in :func:`on_times`, where SciPy's non-negative least squares do not end.
+    Raises ParameterError if no grid of times leaves a long-time modulus, as of a fluid, and
+    RuntimeError as :func:`on_times`.
     """
     starts = _fit_wider_grids(data, None if modes else target)
     if not starts:
@@ -483,8 +371,7 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
     """Return times of modes between two ends, from the longest down, both ends among them.
 
     ends : (shortest, longest) time, s, > 0.
-    density : number of times in a decade, > 0; the number of all, 1 + decades ``density``, is
-    rounded, at least 2.
+    density : number of times in a decade, > 0; of all they are 1 + decades ``density``, rounded.
     Returns times in equal ratios, descending, s, shape (times,).
     """
     decades = math.log10(ends[1] / ends[0])
@@ -492,22 +379,12 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
 
 
 def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
-    """Return whether no row of the data has a misfit above the target: each is at most the target.
-
-    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, the fit.
-    target : largest misfit of each row, a root mean square of relative errors, dimensionless.
-    """
+    """Return whether no row of the ``data`` has a misfit above the ``target``, dimensionless."""
     return max(misfits(data, spectrum)) <= target
 
 
 def _size(data: Data, spectrum: Spectrum) -> float:
-    """Return the root of the sum of the squared misfits of all rows, by which fits are compared.
-
-    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, the fit.
-    Returns a dimensionless number.
-    """
+    """Return the root of the sum of the squared misfits of all rows, by which fits are compared."""
     return math.hypot(*misfits(data, spectrum))
 
 
@@ -520,8 +397,7 @@ def _leave_out_mode(
     """Return a spectrum with one mode less, with a mode left out or two neighbours merged, or None.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out, of at least
-        one mode, all strengths > 0, as in :func:`on_times`.
+    spectrum : :class:`Spectrum` of the data, of at least one mode, all strengths > 0.
     ends : (shortest, longest) time that is allowed, s.
     good : function of a spectrum that returns whether it is acceptable; None: any is.
     Returns the candidate with the least misfit as it is, its times not refined, if it is
@@ -548,8 +424,8 @@ def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
     """Return the candidates for one mode less: times with one left out, or with two neighbours
     replaced by their mean.
 
-    spectrum : :class:`Spectrum`, the spectrum, of n modes, n >= 1, with strengths > 0, as those of
-        :func:`on_times`; means are of the logarithms of its times, weighted by strength.
+    spectrum : :class:`Spectrum` of n modes, n >= 1, with strengths > 0, by which the means of the
+        logarithms of its times are weighted.
     Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each: first those with
     one left out, then those with a mean, both from the longest time on.
     """
@@ -616,11 +492,9 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     A spectrum is admissible if its times are within two decades of the data (of a
     :class:`.dynamic_moduli.Relaxation` not below half the first time), its strengths are not
     negative, and the sum of the squared relative errors is at most that of the fit, or four
-    variances of a
-    residual above the least one, if that is more.
+    variances of a residual above the least one, if that is more.
 
-    data : measured moduli, a :class:`.dynamic_moduli.Curve` or a
-    :class:`.dynamic_moduli.Relaxation`.
+    data : measured moduli, a :class:`.dynamic_moduli.Curve` or :class:`.dynamic_moduli.Relaxation`.
     fit : :class:`Spectrum`, the fit, whose times are allowed too.
     Returns the :class:`AdmissibleSpectra`.
     Raises RuntimeError as :func:`on_times` does.
@@ -642,27 +516,19 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     # the sum of squares of the fit, from the mean squares of its rows
     own = data[0].size * sum(misfit * misfit for misfit in misfits(data, fit))
     allowed = max(own, problem.cost(best) * (1.0 + _RISE / freedom))
-    changes = []
-    E = []
-    alpha = []
+    found = []
     for at in rate.tolist():
         pull = _slopes_of_moment(problem, best, at)
         for sign in (-1.0, 1.0):
-            found = problem.spectrum(
-                _pulled(problem, best, pull=pull, sign=sign, allowed=allowed), MOST_MODES
-            )
-            series = Prony(found.strength / found.E, found.tau / T_ref)
+            pulled = _pulled(problem, best, pull=pull, sign=sign, allowed=allowed)
+            E, strength, tau = problem.spectrum(pulled, MOST_MODES)
+            series = Prony(strength / E, tau / T_ref)
             # at the same load kappa = R/l0 is proportional to the root of the long-time modulus
-            changes.append(_moments(series, math.sqrt(found.E / fit.E), V) / M - 1.0)
-            E.append(found.E)
-            alpha.append(series.alpha)
+            change = _moments(series, math.sqrt(E / fit.E), V) / M - 1.0
+            found.append([E, series.alpha, *change])
+    spectra = np.reshape(found, (2 * n, 2 + n))
     return AdmissibleSpectra(
-        rate=rate,
-        V=V,
-        M=M,
-        M_changes=np.reshape(changes, (2 * n, n)),
-        E=np.array(E),
-        alpha=np.array(alpha),
+        rate=rate, V=V, M=M, M_changes=spectra[:, 2:], E=spectra[:, 0], alpha=spectra[:, 1]
     )
 
 
@@ -673,8 +539,7 @@ def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Float
     since the transform of the pressure is proportional to J_1(u)/u at the wavenumber u over half
     the contact length.
 
-    problem : :class:`LeastSquares`, n unknowns: excess of the long-time modulus over the least one,
-    and strengths.
+    problem : :class:`LeastSquares`, n unknowns.
     best : values of the unknowns at which the derivatives are taken, (n,).
     rate : transit frequency, 1/s.
     Returns them in the inverse of the unit of the unknowns, (n,).

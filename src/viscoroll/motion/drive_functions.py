@@ -330,10 +330,8 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
         differ = np.abs(given - start) > _START * scale
         if differ.any():
             text = f"{name}0 = {{}}: must be None, or {{}}, the prescribed {name} at t = 0"
-            found, wanted = (
-                np.broadcast_to(each, differ.shape)[differ][0] for each in (given, start)
-            )
-            raise dimensionless_error(f"{name}0", text, (name, found), (name, wanted))
+            numbers = (np.broadcast_to(each, differ.shape)[differ][0] for each in (given, start))
+            raise dimensionless_error(f"{name}0", text, name, *numbers)
     if start.size > 1:
         return start
     return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])
@@ -407,7 +405,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     if jumps.any():
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
         text = f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed"
-        raise dimensionless_error(name, text, ("t", when))
+        raise dimensionless_error(name, text, "t", when)
     terms = np.zeros_like(speed.terms)
     terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1])
     terms *= _dx_dt(lengths)[..., None]

@@ -326,8 +326,7 @@ def fit_callable(
                 "resolve = {}: must be at least {}: "
                 f"at most {MOST} samples up to t = {{}} are taken"
             )
-            numbers = (("t", each) for each in (resolve, end / MOST, end))
-            raise dimensionless_error("resolve", text, *numbers)
+            raise dimensionless_error("resolve", text, "t", resolve, end / MOST, end)
         samples = max(math.ceil(end / resolve), SAMPLES)
     sampled = _Sampled(name, function, end=end, rtol=rtol, low=low, samples=samples)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
@@ -380,7 +379,7 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
                 f"t = {{}} ({sampled.taken} values of it were taken): must be smooth except for "
                 "jumps and corners; or give a Schedule"
             )
-            raise dimensionless_error(sampled.name, text, ("t", start))
+            raise dimensionless_error(sampled.name, text, "t", start)
         # at a cut the parts end and begin at neighbouring doubles, else both in the middle; the
         # left part is put last, to be fitted first, as ``so_far`` needs the order of time
         left, right = cut or (0.5 * (start + stop),) * 2

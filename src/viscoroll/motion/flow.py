@@ -34,15 +34,11 @@ from ..laws.law_table import law_table
 from ..materials import Prony
 from .flow_tables import (
     NODES,
-    OUT_OF_RANGE,
     SPEEDS,
-    STOPS,
-    FlowProblem,
-    NoFlowMap,
     fill_layers,
     fill_manifold,
 )
-from .motion_problem import integrate_motions
+from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integrate_motions
 
 # --- A flow map, and its file beside the compiled kernels ---
 

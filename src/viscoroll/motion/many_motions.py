@@ -157,7 +157,7 @@ def _solve_by_flow_map(
         )
     elif (speed := speed * unit) > SPEED_RANGE[1]:
         text = "speed = {}: must be at most {}"
-        raise dimensionless_error("speed", text, ("V", speed / unit), ("V", SPEED_RANGE[1] / unit))
+        raise dimensionless_error("speed", text, "V", speed / unit, SPEED_RANGE[1] / unit)
     if not speed > 0.0:
         return None
     chosen = flow_map(scene, speed, threads=batch.threads)

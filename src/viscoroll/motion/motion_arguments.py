@@ -143,7 +143,7 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
         fastest = max(extent(array), key=abs) if array.size else 0.0
         if abs(fastest) > high:
             text = f"{name} = {{}}: must be at most {{}} in magnitude"
-            raise dimensionless_error(name, text, (name, fastest), (name, high))
+            raise dimensionless_error(name, text, name, fastest, high)
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer(
         (V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16
@@ -151,34 +151,30 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
         tiny = larger[(larger > 0.0) & (larger < low)]
         if tiny.size:
-            name = "max(|V0|, R |omega0|)"
-            text = f"{name} = {{}}: must be 0, or at least {{}}"
-            raise dimensionless_error(name, text, ("V", tiny.min()), ("V", low))
+            text = "max(|V0|, R |omega0|) = {}: must be 0, or at least {}"
+            raise dimensionless_error("V0, omega0", text, "V0", tiny.min(), low)
     return V, omega
 
 
 def dimensionless_error(
-    name: str, text: str, *numbers: tuple[str, float], scale: Scale = DIMENSIONLESS
+    name: str, text: str, quantity: str, *numbers: float, scale: Scale = DIMENSIONLESS
 ) -> ParameterError:
     """Return the error, not raised, of a sentence that states dimensionless numbers.
 
     name: name of the parameter.
     text: the sentence, with a place {} for each number.
-    numbers: quantity and value of each; the first is the value that was found.
-    scale: :class:`Scale` of the roller, in whose units the numbers are told.  Of units that differ
-    between motions the numbers are told as they are, and the sentence ends with "(dimensionless)".
+    quantity: the quantity of these numbers.
+    numbers: their values; the first is the one that was found.
+    scale: :class:`Scale` of the roller, in whose unit the numbers are told.  Where it differs
+    between motions they are told as they are, and the sentence ends with "(dimensionless)".
     """
-    units = [scale[quantity] for quantity, _ in numbers]
-    if any(map(np.ndim, units)):
-        return dimensionless_error(name, f"{text} (dimensionless)", *numbers)
-    values = [value * unit for (_, value), unit in zip(numbers, units, strict=True)]
-    words = (
-        f"{digits_beside(value, *values)} {scale.unit(quantity) * scale.si}"
-        for value, (quantity, _) in zip(values, numbers, strict=True)
-    )
-    sentence = text.format(*(word.rstrip() for word in words))
+    if np.ndim(scale[quantity]):
+        return dimensionless_error(name, f"{text} (dimensionless)", quantity, *numbers)
+    values = [scale[quantity] * x for x in numbers]
+    unit = scale.unit(quantity) if scale.si else ""
+    sentence = text.format(*(f"{digits_beside(x, *values)} {unit}".rstrip() for x in values))
     error = ParameterError(name, values[0], sentence.partition(": must be ")[2], sentence)
-    error.dimensionless = (text, *numbers)
+    error.dimensionless = (text, quantity, *numbers)
     return error
 
 

@@ -283,34 +283,23 @@ class Motion(RollResult):
             for name in ("V", "omega", "x")
         ]
         for name, given in self.drive.given.items():
-            title = (
-                f"prescribed {name}" if name in ("V", "omega") else name
-            )  # V and omega have rows of their own above
+            # V and omega have rows of their own above
+            title = f"prescribed {name}" if name in ("V", "omega") else name
             rows.append(SummaryRow(title, describe_load(given, self._unit(name))))
         if not np.isnan(self.onset_time):
-            rows.append(
-                SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t"))
-            )
+            onset = f"t = {self.onset_time:.6g}"
+            rows.append(SummaryRow("onset of partial slip", onset, self._unit("t")))
         if self.switches:
             last = self.switches[-1]
-            end = (
-                ": V fell to 0 in double precision"
-                if last.regime == "rest" and np.isnan(self.rest_time)
-                else ""
-            )
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
-            rows.append(
-                SummaryRow(
-                    "changes of regime",
-                    f"{len(self.switches)}, the last to {last.regime} at {when}{end}",
-                )
-            )
+            changes = f"{len(self.switches)}, the last to {last.regime} at {when}"
+            if last.regime == "rest" and np.isnan(self.rest_time):
+                changes += ": V fell to 0 in double precision"
+            rows.append(SummaryRow("changes of regime", changes))
         if self.reversals.size:
             rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
-        return "Motion", [
-            *rows,
-            SummaryRow("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})"),
-        ]
+        ended = f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})"
+        return "Motion", [*rows, SummaryRow("ended", ended)]
 
     def at(self, t: ArrayLike) -> Motion:
         """Return the same motion at other times within [0, end], by the dense output of the steps.
@@ -415,8 +404,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     t = np.minimum(times / scale["t"], end)
     if t[-1] != end:
         t = np.append(t, end)
-    noted = np.empty((_SWITCHES_KEPT, 2))
-    noted.fill(np.nan)
+    noted = np.full((_SWITCHES_KEPT, 2), np.nan)
     out, (status, steps, _, onset_time, rest_time) = integrate_single(
         problem, t, noted, NO_NOTES[1]
     )
@@ -489,9 +477,8 @@ def roll(
         state only, and ``course`` of the result is the whole motion.
     rtol : relative tolerance in [1e-12, 1e-2].  The global relative error of x and of the switch
         times is proportional to it; that of V and omega too, multiplied by t |V'|/|V|, by which a
-        late
-        speed magnifies any earlier error.  Errors are mostly below rtol, at most 30 rtol for the
-        scenes of ``tests/motion/test_motion.py``; rare motions elsewhere may exceed that a little.
+        late speed magnifies any earlier error.  Errors are mostly below rtol, at most 30 rtol for
+        the scenes of ``tests/motion/test_motion.py``; rare motions may exceed that a little.
     force : force on the axis along V, divided by P; kinds as for ``torque``.
     torque : torque on the cylinder along omega, divided by P R: a number or a function of time.
 
@@ -518,9 +505,9 @@ def roll(
     rest : a speed, divided by R/T_ref or in m/s; None: none.  End the motion where max(|V|,
         R |omega|) falls below this once nothing drives any more; refused where something drives to
         the end.  Nothing stops in finite time: at small V the speed decays like exp(-gamma c t/(1 +
-        j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha
-        = 1) rolls for ever.  From there on V = omega = 0, and x and angle stay; the omitted
-        distance is close to (1 + j) V/(gamma c).
+        j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From
+        there on V = omega = 0, and x and angle stay; the omitted distance is close to (1 + j)
+        V/(gamma c).
     unsteady : in partial slip use M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N)
         V' = -gamma M where creepage is small.  The errors of V by the law of steady rolling become
         some five times smaller (docs/validity.md).  The motion ends where gamma N has risen to 1 +
@@ -549,9 +536,8 @@ def roll(
     ParameterError
         NaN, infinite or oversized input, unsorted times, an array where one number belongs; both
         speeds prescribed, a prescribed speed that jumps or does not match its start, a callable
-        that
-        polynomials do not follow; ``rest`` where something drives to the end; ``unsteady`` with
-        bodies that differ or with a cover; ``rested`` below 0, with a prescribed speed, with a
+        that polynomials do not follow; ``rest`` where something drives to the end; ``unsteady``
+        with bodies that differ or with a cover; ``rested`` below 0, with a prescribed speed, with a
         cover, or at a start in full slip or from V0 = omega0 = 0; a scene without gamma, a layer
         too thin for its law; a unit of another dimension.
     Exception

@@ -9,6 +9,8 @@ each file is written whole, synced, and compared with the digest of its content.
 
 **Identity** of a store: the run that it belongs to, and whether the same run with more motions may
 extend it.
+
+**Names**: long names and units of the columns of a store.
 """
 
 from __future__ import annotations
@@ -26,9 +28,21 @@ import msgspec
 import numpy as np
 
 from .. import __version__
-from ..core import Dataset, FileError, as_file_error, import_extra, seal, seal_matches, write_bytes
-from ..motion import Summary, provenance
+from ..core import (
+    SYMBOLS,
+    Dataset,
+    FileError,
+    as_file_error,
+    import_extra,
+    seal,
+    seal_matches,
+    si_unit,
+    write_bytes,
+)
+from ..motion import Summary, column_attributes, provenance
+from ..presets import CylinderSection
 from .runfile import Run
+from .uncertain_inputs import PREFIXES
 
 # --- Records ---
 
@@ -375,3 +389,52 @@ def _no_extension(before: Run, run: Run) -> str:
     if run.method != before.method:
         return f"computed by method {before.method!r}: add method = {before.method!r} to [run]"
     return ""
+
+
+# --- Long names and units of the columns of a store ---
+
+#: Letter of a Prony series in the name of an input, as in tau_2 -> meaning of the number, with its
+#: index.
+_SERIES = {
+    "E": "strength {} of relaxation, divided by the long-time modulus",
+    "tau": "relaxation time {} divided by T_ref",
+    "J": "strength {} of creep, divided by the long-time compliance",
+    "T": "retardation time {} divided by T_ref",
+}
+
+
+def attributes(name: str, si: bool) -> dict[str, Any]:
+    """Return the attributes of a column of a store, of types that JSON has.
+
+    name: name of an input (as base_E, tau_2, drive_torque_time_1), of a field or an end of a motion
+        (as V, rest_time, status), or "t".
+    si: whether the run is in SI units, else dimensionless.
+    Returns a dict with long_name and units ("1" of a dimensionless quantity); of a quantity in the
+    table of symbols also symbol and equation, unless it has a dimension and the run is in SI units;
+    of the codes regime, status and flow no units, but the list flag_values and the text
+    flag_meanings, a word for each code.  The long_name is "" of a name that is none of these.
+    """
+    if name.startswith(PREFIXES["drive"]):
+        # drive_torque, drive_torque_2 (its second value) or drive_torque_time_2
+        load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")
+        if corner.startswith("time_"):
+            times = f"time {corner.removeprefix('time_')} of the given {load}"
+            return {"long_name": times, "units": attributes("t", si)["units"]}
+        known = attributes(load, si)
+        return known | {
+            "long_name": f"given: {known['long_name']}" + f", value {corner}" * bool(corner)
+        }
+    if name.startswith(PREFIXES["base"]):
+        # a number of the base is named as that of the cylinder, whose words are exchanged
+        known = attributes(name.removeprefix(PREFIXES["base"]), si)
+        return known | {"long_name": f"base: {known['long_name'].removesuffix(' of the cylinder')}"}
+    letter, _, index = name.partition("_")
+    if letter in _SERIES and index.isdecimal():
+        return {"long_name": _SERIES[letter].format(index), "units": "1"}
+    if name in CylinderSection.__annotations__ and name not in SYMBOLS:
+        return {"long_name": f"{name} of the cylinder", "units": si_unit(name)}
+    known = column_attributes(name, si)
+    return {
+        key: value.tolist() if isinstance(value, np.ndarray) else value
+        for key, value in known.items()
+    }

@@ -26,25 +26,21 @@ import numpy as np
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
 from ..core import (
-    SYMBOLS,
     FileError,
     Floats,
     NDArray,
     as_file_error,
     shape_error,
-    si_unit,
     write_bytes,
 )
 from ..motion import (
     Ensemble,
     Summary,
-    column_attributes,
     merge_summaries,
     summarise,
     summary_dataset,
 )
 from ..motion.ensemble import ensemble
-from ..presets import CylinderSection
 from ..sampling import points
 from . import run_records
 from .run_records import (
@@ -52,6 +48,7 @@ from .run_records import (
     RECORDS,
     Record,
     about,
+    attributes,
     damaged,
     encoded,
     identity,
@@ -63,7 +60,6 @@ from .run_records import (
 )
 from .run_rollers import drive_of, measured_bands, roller_of
 from .runfile import START, Run
-from .uncertain_inputs import PREFIXES
 
 # --- One block of a run, a range of its motions ---
 
@@ -247,55 +243,6 @@ def _fraction_outside(run: Run) -> float:
     for low, high in measured_bands(run.path, content).values():
         outside = outside | (frequency < low) | (frequency > high)
     return float(np.mean(outside & (V0 > 0.0)))
-
-
-# --- Long names and units of the columns of a store ---
-
-#: Letter of a Prony series in the name of an input, as in tau_2 -> meaning of the number, with its
-#: index.
-_SERIES = {
-    "E": "strength {} of relaxation, divided by the long-time modulus",
-    "tau": "relaxation time {} divided by T_ref",
-    "J": "strength {} of creep, divided by the long-time compliance",
-    "T": "retardation time {} divided by T_ref",
-}
-
-
-def attributes(name: str, si: bool) -> dict[str, Any]:
-    """Return the attributes of a column of a store, of types that JSON has.
-
-    name: name of an input (as base_E, tau_2, drive_torque_time_1), of a field or an end of a motion
-        (as V, rest_time, status), or "t".
-    si: whether the run is in SI units, else dimensionless.
-    Returns a dict with long_name and units ("1" of a dimensionless quantity); of a quantity in the
-    table of symbols also symbol and equation, unless it has a dimension and the run is in SI units;
-    of the codes regime, status and flow no units, but the list flag_values and the text
-    flag_meanings, a word for each code.  The long_name is "" of a name that is none of these.
-    """
-    if name.startswith(PREFIXES["drive"]):
-        # drive_torque, drive_torque_2 (its second value) or drive_torque_time_2
-        load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")
-        if corner.startswith("time_"):
-            times = f"time {corner.removeprefix('time_')} of the given {load}"
-            return {"long_name": times, "units": attributes("t", si)["units"]}
-        about = attributes(load, si)
-        return about | {
-            "long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)
-        }
-    if name.startswith(PREFIXES["base"]):
-        # a number of the base is named as that of the cylinder, whose words are exchanged
-        about = attributes(name.removeprefix(PREFIXES["base"]), si)
-        return about | {"long_name": f"base: {about['long_name'].removesuffix(' of the cylinder')}"}
-    letter, _, index = name.partition("_")
-    if letter in _SERIES and index.isdecimal():
-        return {"long_name": _SERIES[letter].format(index), "units": "1"}
-    if name in CylinderSection.__annotations__ and name not in SYMBOLS:
-        return {"long_name": f"{name} of the cylinder", "units": si_unit(name)}
-    about = column_attributes(name, si)
-    return {
-        key: value.tolist() if isinstance(value, np.ndarray) else value
-        for key, value in about.items()
-    }
 
 
 # --- The store ---

@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 
 from ..core import (
     FileError,
@@ -35,8 +36,10 @@ from ..core import (
     ParameterError,
     as_section_error,
     check_names,
+    is_real,
     read_toml,
     section_error,
+    suggestion,
 )
 from ..materials import material_as_toml, parse_materials
 from ..motion import (
@@ -52,7 +55,7 @@ from ..motion import (
 from ..presets import check_sections, locate_error
 from ..sampling import Design
 from .run_rollers import RUN_SECTIONS, Rollers, drive_of, roller_of
-from .uncertain_inputs import Inputs, correlated, inputs_in, inputs_of
+from .uncertain_inputs import Inputs, inputs_in, inputs_of
 
 #: Largest number of motions of a block, by method: some seconds of work.
 _MOST_MOTIONS = {"flow": 1 << 20, "integrate": 1 << 16}
@@ -465,3 +468,63 @@ def _digest(
     # deterministic: keys in sorted order
     described = [kept, times.tolist(), sections, materials, samples]
     return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()
+
+
+def correlated(path: Path, inputs: Inputs) -> Inputs:
+    """Return the inputs with the Gaussian copula that the section [correlation] states; without it
+    nothing is added.
+
+    path: path of the run file, for errors.
+    inputs: :class:`Inputs` of the run without correlations; ``content["correlation"]`` has a ->
+        b -> correlation in (-1, 1) of the normal variables of which the inputs a and b are monotone
+        functions.  A pair that is not given has correlation 0; a.b and b.a may both be given if
+        they are equal.
+    Returns new Inputs with ``correlated``, the names in [correlation] in the order of ``random``,
+    and ``mixing``, the Cholesky factor of their matrix; without that section they are () and None.
+    Raises FileError for a section of another form, a name without distribution, a value out of
+    range, a.b that differs from b.a, or a matrix that is not positive definite.
+    """
+    section = inputs.content.get("correlation", {})
+    random = inputs.random
+    if not isinstance(section, dict):
+        raise section_error(
+            path,
+            "",
+            "correlation",
+            "correlation: must be a section [correlation] with lines like V0.mu = 0.5",
+        )
+    pairs: dict[tuple[str, str], Any] = {}
+    for a, row in section.items():
+        if not isinstance(row, dict):
+            problem = f"{a} = {row!r:.40}: must be the correlation of two inputs, as V0.mu = 0.5"
+            raise section_error(path, "correlation", a, problem)
+        pairs |= {(a, b): value for b, value in row.items()}
+    names = tuple(name for name in random if any(name in pair for pair in pairs))
+    matrix = np.eye(len(names))
+    for (a, b), value in pairs.items():
+        problem = ""
+        if unknown := [name for name in (a, b) if name not in random]:
+            allowed = f"must be one of the inputs with a distribution, {', '.join(random)}"
+            problem = f"{unknown[0]!r} has none: {allowed}{suggestion(unknown[0], random)}"
+        elif a == b or not is_real(value) or not -1.0 < value < 1.0:
+            problem = (
+                f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"
+            )
+        elif pairs.get((b, a), value) != value:
+            problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"
+        if problem:
+            raise section_error(path, "correlation", a, problem)
+        n = names.index(a)
+        m = names.index(b)
+        matrix[n, m] = matrix[m, n] = value
+    try:
+        mixing: Any = np.linalg.cholesky(matrix) if names else None
+    except np.linalg.LinAlgError:
+        raise section_error(
+            path,
+            "",
+            "correlation",
+            "[correlation] these correlations contradict each other (their matrix must be positive "
+            "definite): bring them nearer to 0",
+        ) from None
+    return replace(inputs, correlated=names, mixing=mixing)

@@ -1,4 +1,4 @@
-"""Uncertain inputs of a run file: distributions, columns, correlations, and their values.
+"""Uncertain inputs of a run file: distributions, columns, and their values.
 
 :func:`inputs_of` collects the uncertain numbers of a run file as :class:`Inputs`.  An input is a
 :class:`Distribution`, or a column of a file, a joint sample.  Motions are drawn as points of a unit
@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ from ..core import (
     ParameterError,
     check_keys,
     import_extra,
+    is_real,
     section_error,
     si_unit,
     suggestion,
@@ -427,7 +428,7 @@ class _Reader:
         if not (
             isinstance(cut, list)
             and len(cut) == 2
-            and all(_is_number(end) and end == end for end in cut)
+            and all(is_real(end) and end == end for end in cut)
         ):
             raise self.fault(
                 number,
@@ -481,7 +482,7 @@ class _Reader:
             key: value for key, value in table.items() if key not in ("distribution", "truncate")
         }
         for key, value in parameters.items():
-            if not _is_number(value) or not math.isfinite(value):
+            if not is_real(value) or not math.isfinite(value):
                 raise self.fault(
                     number, f"{key} = {value!r:.40}: must be a finite number without a unit"
                 )
@@ -548,11 +549,6 @@ class _Reader:
         columns[number.name] = values
 
 
-def _is_number(value: Any) -> bool:
-    """Whether a value of TOML is a number."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
 def read_column(path: Path, column: str, unit: str) -> Floats:
     """Read a column of finite numbers from a file.
 
@@ -603,63 +599,3 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     ):
         raise ValueError("must contain finite numbers, one in each row")
     return np.ascontiguousarray(values, np.float64)
-
-
-def correlated(path: Path, inputs: Inputs) -> Inputs:
-    """Return the inputs with the Gaussian copula that the section [correlation] states; without it
-    nothing is added.
-
-    path: path of the run file, for errors.
-    inputs: :class:`Inputs` of the run without correlations; ``content["correlation"]`` has a ->
-        b -> correlation in (-1, 1) of the normal variables of which the inputs a and b are monotone
-        functions.  A pair that is not given has correlation 0; a.b and b.a may both be given if
-        they are equal.
-    Returns new Inputs with ``correlated``, the names in [correlation] in the order of ``random``,
-    and ``mixing``, the Cholesky factor of their matrix; without that section they are () and None.
-    Raises FileError for a section of another form, a name without distribution, a value out of
-    range, a.b that differs from b.a, or a matrix that is not positive definite.
-    """
-    section = inputs.content.get("correlation", {})
-    random = inputs.random
-    if not isinstance(section, dict):
-        raise section_error(
-            path,
-            "",
-            "correlation",
-            "correlation: must be a section [correlation] with lines like V0.mu = 0.5",
-        )
-    pairs: dict[tuple[str, str], Any] = {}
-    for a, row in section.items():
-        if not isinstance(row, dict):
-            problem = f"{a} = {row!r:.40}: must be the correlation of two inputs, as V0.mu = 0.5"
-            raise section_error(path, "correlation", a, problem)
-        pairs |= {(a, b): value for b, value in row.items()}
-    names = tuple(name for name in random if any(name in pair for pair in pairs))
-    matrix = np.eye(len(names))
-    for (a, b), value in pairs.items():
-        problem = ""
-        if unknown := [name for name in (a, b) if name not in random]:
-            allowed = f"must be one of the inputs with a distribution, {', '.join(random)}"
-            problem = f"{unknown[0]!r} has none: {allowed}{suggestion(unknown[0], random)}"
-        elif a == b or not _is_number(value) or not -1.0 < value < 1.0:
-            problem = (
-                f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"
-            )
-        elif pairs.get((b, a), value) != value:
-            problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"
-        if problem:
-            raise section_error(path, "correlation", a, problem)
-        n = names.index(a)
-        m = names.index(b)
-        matrix[n, m] = matrix[m, n] = value
-    try:
-        mixing: Any = np.linalg.cholesky(matrix) if names else None
-    except np.linalg.LinAlgError:
-        raise section_error(
-            path,
-            "",
-            "correlation",
-            "[correlation] these correlations contradict each other (their matrix must be positive "
-            "definite): bring them nearer to 0",
-        ) from None
-    return replace(inputs, correlated=names, mixing=mixing)

@@ -17,6 +17,7 @@ mesh, p = a - B q, so that the system of each choice of zones has the size of q 
 """
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,12 +45,31 @@ _MESH_ERROR = 1e-9
 _MOST_STEPS = 60
 
 
-@inline_kernel
-def graded(t):
-    """Return the place in [0, 1] of the parameter t in [0, 1] of a mesh, a float: dense at both
-    ends, as tractions fall like roots there.
+class Contact(NamedTuple):
+    """Arrays of one contact of N elements, in the units of the module.
+
+    Inner node i is node i + 1 of the mesh; element e lies between nodes e and e + 1.
+
+    nodes : (N + 1,), x of the nodes, from -c to c.
+    at : (N,), x of the places of collocation, one in each element.
+    H, T, C : (N, N - 1), slope by pressure, strain by shear and coupling at the places, by the
+        tractions at inner nodes (:func:`assemble`).
+    p, q : (N - 1,), pressure and shear at inner nodes.
+    strain : (N,), u' at the places.
+    zone : (N - 1,), 0 for stick, 1 or -1 for the sign of the slip, at inner nodes.
+    place : (N + 1,), parameters of the nodes, from 0 to 1.
     """
-    return math.sin(0.5 * math.pi * t) ** 2
+
+    nodes: Any
+    at: Any
+    H: Any
+    T: Any
+    C: Any
+    p: Any
+    q: Any
+    strain: Any
+    zone: Any
+    place: Any
 
 
 @inline_kernel
@@ -76,7 +96,7 @@ def _gathered(t, spots, used):
 
 
 @kernel
-def make_mesh(c, spots, used, nodes, at, place):
+def make_mesh(c, spots, used, contact):
     """Write the nodes of a mesh and the places of collocation, one in each element.
 
     The elements are equal in s(t) = a t + sum of weight ln(1 + |t - spot|/width): geometric towards
@@ -87,12 +107,12 @@ def make_mesh(c, spots, used, nodes, at, place):
         factor of e of the distance from it; changed in place: weights are reduced where spots would
         take more than :data:`_SPOTS_PART`.
     used : int, number of spots, rows of ``spots`` that count.
-    nodes, at, place : (N + 1,), (N,) and (N + 1,), written: nodes, ascending from -c to c; places
-        of collocation, each half an element after the node before it; the parameter of each node,
-        from 0 to 1.
+    contact : :class:`Contact`, of which are written: nodes, ascending from -c to c; places of
+        collocation, each half an element after the node before it; the parameter of each node, from
+        0 to 1.
     Returns nothing.
     """
-    count = at.size
+    count = contact.at.size
     # elements that the spots take, high - low, at most a part of all: the others are left for a > 0
     low, _ = _gathered(0.0, spots, used)
     high, _ = _gathered(1.0, spots, used)
@@ -127,22 +147,25 @@ def make_mesh(c, spots, used, nodes, at, place):
             t = 0.0
         if n == 2 * count:
             t = 1.0
-        x = -c + 2.0 * c * graded(t)
+        # dense at both ends, as tractions fall like roots there
+        x = -c + 2.0 * c * math.sin(0.5 * math.pi * t) ** 2
         if n % 2:  # odd: the place in element n // 2, else node n // 2
-            at[n // 2] = x
+            contact.at[n // 2] = x
         else:
-            nodes[n // 2] = x
-            place[n // 2] = t
+            contact.nodes[n // 2] = x
+            contact.place[n // 2] = t
 
 
 @kernel
-def scale_mesh(c, nodes, at):
+def scale_mesh(c, contact):
     """Scale a mesh to another half length about its middle, x = 0.
 
     c : float, the new half length, > 0.
-    nodes, at : nodes and places of collocation, (N + 1,) and (N,), changed.
+    contact : :class:`Contact`, whose nodes and places of collocation are changed.
     Returns nothing; parameters of the nodes stay.
     """
+    nodes = contact.nodes
+    at = contact.at
     factor = 2.0 * c / (nodes[at.size] - nodes[0])
     for n in range(at.size):
         nodes[n] *= factor
@@ -184,24 +207,25 @@ def _local_part(local, h):
 
 
 @kernel
-def add_local(local, nodes, at, C):
+def _add_local(local, contact):
     """Add to the local part of the coupling what linear tractions leave out, by the values at four
     nodes.
 
     local : (modes, 2), strength and length, divided by l0, of each mode, 0 for the length of the
         instantaneous one.
-    nodes, at : mesh, (N + 1,) and (N,), N >= 2.
-    C : (N, N - 1), matrix of :func:`assemble`, changed: row e belongs to the place in element e.
+    contact : :class:`Contact`, whose matrix C is changed: row e belongs to the place in element e.
     The tractions are odd about the two outer nodes, in the parameter of the mesh.  Returns nothing.
     """
-    last = at.size - 1
+    nodes = contact.nodes
+    C = contact.C
+    last = contact.at.size - 1
     for e in range(last + 1):
         h = nodes[e + 1] - nodes[e]
         part = _local_part(local, h)
         # What linear tractions leave out at the place: the cubic through four nodes, with weights
         # (-1, 9, 9, -1)/16 in the middle of the element, less the linear interpolation, with
         # weights 1 - ``ahead`` and ``ahead``.  Column n belongs to node n + 1.
-        ahead = (at[e] - nodes[e]) / h
+        ahead = (contact.at[e] - nodes[e]) / h
         # 0.5625 = 9/16 and 0.0625 = 1/16; the outer nodes have no traction and no column
         if e > 0:
             C[e, e - 1] += part * (0.5625 - (1.0 - ahead))
@@ -218,33 +242,35 @@ def add_local(local, nodes, at, C):
 
 
 @kernel(allocates=True)
-def assemble(table, instant, nodes, at, H, T, C):
+def assemble(kernels, contact):
     """Write the matrices of slopes: second differences of the second antiderivatives of the
     kernels.
 
-    table : polynomials in ln|x|, (BINS, 2 signs of x, 3 kernels, DEGREE + 1), of the slope by
-        pressure, of the strain by shear, and of the coupling; without ``instant`` x ln|x|/pi of the
-        first two.  Sign 0 is that of x > 0, the constant of a polynomial in y comes first.
-    instant : instantaneous compliance over the summed long-time compliance.
-    nodes, at : mesh, (N + 1,) and (N,), of at most exp(1.4) in all; no place is a node.
-    H, T, C : (N, N - 1) each, written: slope by pressure, strain by shear, and coupling, at the
-        place in element i by the traction 1 at inner node n.  Returns nothing.
+    kernels : record of ``table``, polynomials in ln|x|, (BINS, 2 signs of x, 3 kernels, DEGREE +
+        1), of the slope by pressure, of the strain by shear, and of the coupling; without
+        ``instant`` x ln|x|/pi of the first two.  Sign 0 is that of x > 0, the constant of a
+        polynomial in y comes first.  ``instant``: instantaneous compliance over the summed
+        long-time compliance.  ``local``: local coupling by modes (:func:`_add_local`).
+    contact : :class:`Contact`, with a mesh of at most exp(1.4) in all, in which no place is a node;
+        its matrices are written: slope by pressure, strain by shear, and coupling, at the place in
+        element i by the traction 1 at inner node n.  Returns nothing.
     """
-    N = at.size
+    nodes = contact.nodes
+    N = contact.at.size
     # Second antiderivatives of the three kernels, at the place i less each node.
     first = np.empty(N + 1)
     second = np.empty(N + 1)
     third = np.empty(N + 1)
     for i in range(N):
         for j in range(N + 1):
-            x = at[i] - nodes[j]
+            x = contact.at[i] - nodes[j]
             log = math.log(abs(x))
             # Bin b of ln|x|, and the position y in it in [-1, 1].  Beyond the bins the first or the
             # last polynomial is extrapolated.
             y = (log - LOWEST) / WIDTH
             b = min(max(int(y), 0), BINS - 1)
             y = 2.0 * (y - b) - 1.0
-            p = table[b, 0 if x > 0.0 else 1]
+            p = kernels.table[b, 0 if x > 0.0 else 1]
             a0 = p[0, DEGREE]
             a1 = p[1, DEGREE]
             a2 = p[2, DEGREE]
@@ -253,7 +279,7 @@ def assemble(table, instant, nodes, at, H, T, C):
                 a1 = fma(a1, y, p[1, d])
                 a2 = fma(a2, y, p[2, d])
             # the part of an instantaneous half-space, which the table leaves out
-            own = instant * x * log / math.pi
+            own = kernels.instant * x * log / math.pi
             first[j] = a0 + own
             second[j] = a1 + own
             third[j] = a2
@@ -262,9 +288,16 @@ def assemble(table, instant, nodes, at, H, T, C):
         for n in range(N - 1):
             behind = 1.0 / (nodes[n + 1] - nodes[n])
             ahead = 1.0 / (nodes[n + 2] - nodes[n + 1])
-            H[i, n] = behind * (first[n] - first[n + 1]) + ahead * (first[n + 2] - first[n + 1])
-            T[i, n] = behind * (second[n] - second[n + 1]) + ahead * (second[n + 2] - second[n + 1])
-            C[i, n] = behind * (third[n] - third[n + 1]) + ahead * (third[n + 2] - third[n + 1])
+            contact.H[i, n] = behind * (first[n] - first[n + 1]) + ahead * (
+                first[n + 2] - first[n + 1]
+            )
+            contact.T[i, n] = behind * (second[n] - second[n + 1]) + ahead * (
+                second[n + 2] - second[n + 1]
+            )
+            contact.C[i, n] = behind * (third[n] - third[n + 1]) + ahead * (
+                third[n + 2] - third[n + 1]
+            )
+    _add_local(kernels.local, contact)
 
 
 @inline_kernel
@@ -295,17 +328,19 @@ def moments(nodes, values):
 
 
 @kernel
-def product(nodes, at, values, slope):
+def product(contact, values, slope):
     """Return the integral of a traction times a slope that is linear in each element.
 
     The gradient in an element is that between the places of its neighbours, so that a linear slope
     is exact.
 
-    nodes, at : mesh, (N + 1,) and (N,), N >= 2.
+    contact : :class:`Contact`, whose mesh is read, N >= 2.
     values : traction at inner nodes, (N - 1,).
     slope : (N,), the slope at the places ``at``, one in each element.
     Returns a float, in the units of the module.
     """
+    nodes = contact.nodes
+    at = contact.at
     found = 0.0
     last = at.size - 1
     for e in range(last + 1):
@@ -405,20 +440,20 @@ def substitute(matrix, order, right):
 
 
 @kernel(allocates=True)
-def eliminate(H, C, at, coupled):
+def eliminate(contact, coupled):
     """Eliminate pressure and g: p = a - B q.
 
-    H, C : matrices of slopes by pressure and by coupling, (N, N - 1), not changed.
-    at : places of collocation from the middle of the contact on, (N,).
+    contact : :class:`Contact`, of which H, C and the places of collocation are read.
     coupled : bool, whether C is not 0; else it is not read.
     Returns (whether the matrix has an inverse, a bool; (N, N): B in its first N - 1 columns, a in
     the last; the last row belongs to g; zeros without an inverse).  Without ``coupled`` B is 0.
     """
+    at = contact.at
     N = at.size
     # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g: (p, g) is the inverse times
     # x, the column a, less the inverse times C, the columns B, times q.
     matrix = np.empty((N, N))
-    matrix[:, : N - 1] = H
+    matrix[:, : N - 1] = contact.H
     matrix[:, N - 1] = -1.0
     order = np.empty(N, np.int64)
     good = factor(matrix, order)
@@ -426,7 +461,7 @@ def eliminate(H, C, at, coupled):
     if not good:
         return good, found
     if coupled:
-        found[:, : N - 1] = C
+        found[:, : N - 1] = contact.C
         found[:, N - 1] = at
         substitute(matrix, order, found)
     else:  # B stays 0: one right side instead of N
@@ -437,12 +472,13 @@ def eliminate(H, C, at, coupled):
 
 
 @kernel(allocates=True)
-def strain_by_shear(T, C, B, coupled):
+def strain_by_shear(contact, B, coupled):
     """Return the strain u' in the elements as a linear function of the shear q.
 
     The pressure is not fixed: it follows q by p = a - B q.
 
-    T, C : matrices (N, N - 1), strain by shear and, with the opposite sign, by pressure.
+    contact : :class:`Contact`, of which are read T, strain by shear, and C, with the opposite sign
+        strain by pressure.
     B : elimination of p, (N, N), of :func:`eliminate`: B and, in the last column, a.
     coupled : bool, whether C is not 0; else neither C nor B is read.
     Returns (N, N): the factors of q in the first N - 1 columns, u' for q = 0 in the last.
@@ -450,12 +486,12 @@ def strain_by_shear(T, C, B, coupled):
     N = B.shape[0]
     # u' = T q - C p = (T + C B) q - C a.
     S = np.zeros((N, N))
-    S[:, : N - 1] = T
+    S[:, : N - 1] = contact.T
     if coupled:
         for i in range(N):
             row = S[i]
             for k in range(N - 1):
-                part = C[i, k]
+                part = contact.C[i, k]
                 other = B[k]  # p_k = a_k - B_k q; a_k is the last number of the row
                 for j in range(N - 1):
                     row[j] += part * other[j]
@@ -464,7 +500,7 @@ def strain_by_shear(T, C, B, coupled):
 
 
 @kernel(allocates=True)
-def solve_zones(S, B, mu, zone, d, q):
+def solve_zones(S, B, mu, d, contact):
     """Solve for the shear with given zones of stick and slip.
 
     A node that slips has q = zone mu p (Coulomb).  For a node that sticks the slip d - u' of the
@@ -473,11 +509,12 @@ def solve_zones(S, B, mu, zone, d, q):
     S : strain u' as a linear function of the shear, (N, N), of :func:`strain_by_shear`.
     B : pressure p = a - B q as a linear function of the shear, (N, N), of :func:`eliminate`.
     mu : float, coefficient of friction, > 0.
-    zone : 0 for stick, 1 or -1 for slip at each inner node, (N - 1,).
     d : float, kappa times the creepage delta.
-    q : shear at the inner nodes, (N - 1,), written if there is a solution.
+    contact : :class:`Contact`, whose zones are read, and whose shear is written if there is a
+        solution.
     Returns whether there is a solution, a bool: False if the matrix is singular.
     """
+    zone = contact.zone
     n = zone.size
     matrix = np.empty((n, n))
     right = np.empty((n, 1))
@@ -500,20 +537,20 @@ def solve_zones(S, B, mu, zone, d, q):
     if not factor(matrix, order):
         return False
     substitute(matrix, order, right)
-    q[:] = right[:, 0]
+    contact.q[:] = right[:, 0]
     return True
 
 
 @kernel(allocates=True)
-def pressure_and_strain(S, B, q, p, strain):
+def pressure_and_strain(S, B, contact):
     """Write pressure and strain that belong to a shear.
 
     S : strain u' as a linear function of the shear, (N, N), of :func:`strain_by_shear`.
     B : pressure p = a - B q as a linear function of the shear, (N, N), of :func:`eliminate`.
-    q : shear at the inner nodes, (N - 1,).
-    p, strain : pressure at the inner nodes, (N - 1,), and u' in the elements, (N,), written.
+    contact : :class:`Contact`, whose shear is read, and whose pressure and strain are written.
     Returns g, a float: distance of the middle of the contact ahead of the axis, divided by l0.
     """
+    q = contact.q
     n = q.size
     g = 0.0
     for i in range(n + 1):
@@ -525,16 +562,16 @@ def pressure_and_strain(S, B, q, p, strain):
         for j in range(n):
             value -= own[j] * q[j]
             slope += row[j] * q[j]
-        strain[i] = slope
+        contact.strain[i] = slope
         if i < n:  # the last row is that of g
-            p[i] = value
+            contact.p[i] = value
         else:
             g = value
     return g
 
 
 @kernel(allocates=True)
-def find_zones(S, B, mu, d, zone, kept, p, q, strain):
+def find_zones(S, B, mu, d, contact):
     """Find the zones of stick and slip of one contact by exchange of nodes.
 
     Nodes that stick with |q| > mu p begin to slip; nodes whose slip is against q begin to stick.
@@ -542,25 +579,27 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
     S : strain u' as a linear function of the shear, (N, N), of :func:`strain_by_shear`.
     B : pressure p = a - B q as a linear function of the shear, (N, N), of :func:`eliminate`.
     mu, d : floats, coefficient of friction, kappa times the creepage delta.
-    zone : 0 for stick, 1 or -1 for slip at each inner node, (N - 1,); a first guess, changed.
-    kept : int, number of inner nodes from the rear whose zone is not changed.
-    p, q : pressure and shear at the inner nodes, (N - 1,) each, written.
-    strain : u' in the elements, (N,), written.
+    contact : :class:`Contact`, whose zones are a first guess, changed; pressure, shear and strain
+        are written.
     Returns (whether zones were found, a bool; g of :func:`pressure_and_strain`, a float).
     """
+    p = contact.p
+    q = contact.q
+    strain = contact.strain
+    zone = contact.zone
     n = zone.size
     new = np.empty(n)
     g = 0.0
     for choice in range(_MOST_CHOICES + n):
-        if not solve_zones(S, B, mu, zone, d, q):
+        if not solve_zones(S, B, mu, d, contact):
             return False, g
-        g = pressure_and_strain(S, B, q, p, strain)
+        g = pressure_and_strain(S, B, contact)
         scale = 0.0  # largest slip, over V
         for e in range(n + 1):
             scale = max(scale, abs(d - strain[e]))
         worst = 0.0  # largest relative violation of Coulomb's law, and its node
         which = -1
-        for i in range(kept, n):
+        for i in range(n):
             new[i] = zone[i]
             slip = d - strain[i + 1]  # in the element ahead of the node, as in solve_zones
             wrong = 0.0
@@ -581,6 +620,6 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
         if choice > _TOGETHER:
             zone[which] = new[which]
         else:
-            for i in range(kept, n):
+            for i in range(n):
                 zone[i] = new[i]
     return False, g

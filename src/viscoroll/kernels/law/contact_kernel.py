@@ -42,16 +42,16 @@ from ..numerics.intrinsics import bits_to_float, float_to_bits
 from ..numerics.jit import inline_kernel, kernel
 from .cover_law import (
     MomentChange,
+    OverSpeed,
     PairOverSpeed,
     Pairs,
     asymmetry_at,
-    creep_of_state,
     cylinder_at,
     length_change,
     moment_change,
     pairs_at,
+    reduced_creep,
     shear_reaction,
-    slope_over_speed,
     slopes_of_cover,
     total_at,
 )
@@ -67,56 +67,75 @@ from .law_functions import (
     locate_row,
     moment_factor,
 )
-from .law_record import TOGETHER, State, read_state, select_material, slip_and_creepage, write_field
+from .law_record import (
+    SCRATCH_SIZE,
+    TOGETHER,
+    State,
+    asks_for_slopes,
+    read_state,
+    select_material,
+    slip_and_creepage,
+    write_field,
+)
 
 #: Fraction of L below which D is small: |Q|/mu as a difference would lose three bits and more.  A
 #: larger one would send states with creep of 0.1 delta_star to the mean slopes, which take half as
 #: long again.
 SMALL_CREEP = 0.0625
 
-#: Place in the scratch of :func:`contact_loop` of kappa of the states.
-_KAPPA = np.uint64(0)
-#: Place in the scratch of :func:`contact_loop` of mu.
-_MU = np.uint64(TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of V, dimensionless.
-_V = np.uint64(2 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of the creepage or omega, whichever is given.
-_CREEP = np.uint64(3 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of u = kappa |V|.
-_U = np.uint64(4 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of L = 2 kappa delta_star/mu.
-_L = np.uint64(5 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of 2 kappa delta_0, from the creepage of free
-#: rolling.
-_FREE_CREEP = np.uint64(6 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of D with a sign (:func:`signed_creep`).
-_D = np.uint64(7 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of v (:func:`stick_argument`).
-_STICK = np.uint64(8 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of rows of the positions of u; t and dt/dx follow.
-_POSITION = np.uint64(9 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of rows of the positions of v; t and dt/dx follow.
-_STICK_POSITION = np.uint64(12 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of Q, where it is needed.
-_Q = np.uint64(15 * TOGETHER)
+# Places in the scratch of :func:`contact_loop`, TOGETHER numbers each.
+(
+    #: kappa of the states.
+    _KAPPA,
+    #: mu.
+    _MU,
+    #: V, dimensionless.
+    _V,
+    #: The creepage or omega, whichever is given.
+    _CREEP,
+    #: u = kappa |V|.
+    _U,
+    #: L = 2 kappa delta_star/mu.
+    _L,
+    #: 2 kappa delta_0, from the creepage of free rolling.
+    _FREE_CREEP,
+    #: D with a sign (:func:`signed_creep`).
+    _D,
+    #: v (:func:`stick_argument`).
+    _STICK,
+    #: Rows of the positions of u; t and dt/dx follow.
+    _POSITION,
+    _,
+    _,
+    #: Rows of the positions of v; t and dt/dx follow.
+    _STICK_POSITION,
+    _,
+    _,
+    #: Q, where it is needed.
+    _Q,
+    #: The asymmetry c of a cover.
+    _ASYMMETRY,
+    #: f of a cover (:mod:`.cover_law`).
+    _FREE,
+    #: g of it.
+    _EXCESS,
+    #: f_c, the part of the cylinder.
+    _FREE_CYLINDER,
+    #: g_c.
+    _EXCESS_CYLINDER,
+    #: The factor by which M_half_space of a cover falls with Q.
+    _FACTOR,
+    #: That of M_cylinder.
+    _CYLINDER_FACTOR,
+    #: The excess of the first in full slip.
+    _FACTOR_EXCESS,
+    #: That of the second.
+    _CYLINDER_FACTOR_EXCESS,
+) = np.arange(0, SCRATCH_SIZE, TOGETHER, dtype=np.uint64)
 #: Distance of t from the row of a position in the scratch.
 _T = np.uint64(TOGETHER)
 #: Distance of dt/dx from that row.
 _DT_DX = np.uint64(2 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of the asymmetry c of a cover.
-_ASYMMETRY = np.uint64(16 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of M of a cover without traction.
-_M_WITHOUT = np.uint64(17 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of f of a cover (:mod:`.cover_law`); g follows.
-_TOTAL = np.uint64(18 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of f_c of a cover; g_c follows.
-_CYLINDER = np.uint64(20 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of the factor by which M_half_space of a cover falls
-#: with Q; that of M_cylinder follows.
-_FACTOR = np.uint64(22 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of the excess of that factor in full slip; that of
-#: M_cylinder follows.
-_FACTOR_EXCESS = np.uint64(24 * TOGETHER)
 
 
 @inline_kernel
@@ -264,7 +283,7 @@ def traction_slopes(u, L, dL, D, law):
 
 
 @inline_kernel
-def signed_creep(L, free_creep, asymmetry, state, law):
+def signed_creep(L, free_creep, asymmetry, state, cover_rows):
     """Return D = L |d| with the sign of the traction, and infinite in full slip.
 
     The state is in full slip where |d| >= 1, which includes omega other than 0 at V = 0 if omega is
@@ -274,18 +293,23 @@ def signed_creep(L, free_creep, asymmetry, state, law):
     free_creep, asymmetry : floats, 2 kappa delta_0, with delta_0 the creepage without creep force,
         and the asymmetry c, dimensionless; not read for half-spaces.
     state : :class:`.law_record.State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
-    law : :class:`.law_record.Law`, of which only ``cover_rows`` is read: whether the material is a
-    cover (not None).
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`), of which none is
+        read; None for half-spaces.
     Returns a float, dimensionless: its sign is that of omega - V for half-spaces, that of (delta -
     delta_0) V for a cover, where V = 0.0 counts as V > 0; free rolling gives 0.0 or -0.0; full slip
     gives inf or -inf; NaN where the creepage is NaN, or ``free_creep`` of a cover.
     """
     slip, delta = slip_and_creepage(state)
-    # D of half-spaces, which that of a cover replaces.  delta_star is formed by the operations of
-    # the field delta_star, in their order: a creepage that equals this field slips fully, exactly.
-    full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
-    D = np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
-    return creep_of_state(D, delta, L, free_creep, asymmetry, state, law.cover_rows)
+    kappa = state.kappa
+    mu = state.mu
+    # A creepage that equals the field delta_star slips fully, exactly, and one that equals delta_0
+    # gives exactly 0: both are formed by the operations of the fields, in their order.
+    if cover_rows is None:
+        full_slip = abs(delta) >= 0.5 * mu / kappa * L
+        return np.copysign(np.inf if full_slip else 2.0 * kappa / mu * abs(delta), slip)
+    beyond = delta - 0.5 * free_creep / kappa
+    d = reduced_creep(2.0 * kappa * (1.0 / (mu * L)) * beyond, asymmetry)
+    return np.copysign(np.inf if abs(d) >= 1.0 else L * abs(d), -d if state.V < 0.0 else d)
 
 
 @inline_kernel
@@ -338,7 +362,9 @@ def Q_slopes(u, L, dL, D, state, law):
     over_omega = over_delta / abs(state.V)
     # The sign of Q, which is that of D, times that of du/dV.
     over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
-    over_V = slope_over_speed(over_V, over_delta, free_creep_and_slopes(u, law)[1], law.cover_rows)
+    # From fixed delta - delta_0 to fixed delta: delta_0 of a cover changes with the speed, by
+    # d delta_0/dV = (du/dV)/(2 kappa) d(2 kappa delta_0)/du, with du/dV = kappa for V > 0.
+    over_V -= 0.5 * over_delta * free_creep_and_slopes(u, law).slope
     if state.creep_is_omega:  # d delta/dV = -omega/V^2 = -(1 + delta)/V at fixed omega
         over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
@@ -358,14 +384,7 @@ def traction_on_moments(pairs, functions, Q, state, cover_rows):
     half-spaces: all changes are 0.
     """
     if cover_rows is None:  # -0.0, as a sum with it keeps the sign of a zero
-        return MomentChange(
-            half_space=-0.0,
-            cylinder=-0.0,
-            half_space_dQ=0.0,
-            cylinder_dQ=0.0,
-            half_space_du=0.0,
-            cylinder_du=0.0,
-        )
+        return MomentChange(-0.0, -0.0, 0.0, 0.0, 0.0, 0.0)
     reaction = shear_reaction(pairs, state.kappa, state.mu, functions.L, functions.dL, cover_rows)
     return moment_change(Q, state.mu, reaction)
 
@@ -526,20 +545,14 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon + epsilon_change, n, request)
-    # rows of fields that are not requested are -1, so that max tells whether any is
-    slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
-    bodies = max(to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
-    bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
+    _write_reaction(n, position, u, state, law, law.cover_rows, request)
     if max(to.M_half_space, to.M_cylinder) >= 0:
         _write_body_moments(n, c, law, law.cover_rows, scratch, request)
-    _write_reaction(n, position, u, state, law, law.cover_rows, request)
-    if slopes or bodies:
-        slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
-        of_M = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dM_half_space_dV, to.dM_cylinder_dV)
-        of_M = max(of_M, to.dM_half_space_domega, to.dM_cylinder_domega)
+    of_Q, of_M, of_bodies = asks_for_slopes(to)
+    if of_Q or of_M or of_bodies:
         # M of a cover depends on Q, so that its slopes need those of Q.
-        slopes_of_Q = slopes_of_Q or (_is_cover(law.cover_rows) and of_M >= 0)
-        _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
+        slopes_of_Q = of_Q or _is_cover(law.cover_rows)
+        _write_slopes(n, c, of_bodies, slopes_of_Q, law, scratch, request)
 
 
 @inline_kernel
@@ -603,24 +616,25 @@ def _write_body_moments(n, c, law, cover_rows, scratch, request):
     half_space, cylinder, _, _ = body_moments(position, u, law)
     half_space *= factor
     cylinder *= factor
-    # M of a body falls by Q (factor + excess |Q|/mu); numbers of the cylinder follow after _T
-    if cover_rows is not None:
+    if cover_rows is not None:  # M of a body falls by Q (factor + excess |Q|/mu)
         Q = scratch[_Q + c]
         used = abs(Q) / scratch[_MU + c]
         half_space -= Q * (scratch[_FACTOR + c] + scratch[_FACTOR_EXCESS + c] * used)
-        cylinder -= Q * (scratch[_FACTOR + _T + c] + scratch[_FACTOR_EXCESS + _T + c] * used)
+        cylinder -= Q * (
+            scratch[_CYLINDER_FACTOR + c] + scratch[_CYLINDER_FACTOR_EXCESS + c] * used
+        )
     write_field(request.to.M_half_space, half_space, n, request)
     write_field(request.to.M_cylinder, cylinder, n, request)
 
 
 @inline_kernel
-def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
+def _write_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     """Write the slopes of Q and of the moments, of those that are requested.
 
     n : int, index of the state in the columns of ``request.out``, >= 0; not checked.
     c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
     bodies : bool, whether a slope of the moment of one body is requested.
-    slopes_of_Q : bool, whether a slope of Q is requested, or of a moment of a cover.
+    slopes_of_Q : bool, whether slopes of Q are needed: of a cover always.
     law : :class:`.law_record.Law` with the material of the state selected; with ``bodies`` it has
         rows of the moments of the bodies.
     scratch : of it the state (kappa, mu, V, creep), u, the position of u, D and, of a cover, Q are
@@ -636,6 +650,10 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     functions = length_and_moment(position, u, law)
     pairs = pairs_at(position, u, law.cover_rows)
     change = traction_on_moments(pairs, functions, scratch[_Q + c], state, law.cover_rows)
+    half_space_slope = 0.0
+    cylinder_slope = 0.0
+    if bodies:
+        _, _, half_space_slope, cylinder_slope = body_moments(position, u, law)
     # 0 where no slope of Q is needed: of half-spaces they then multiply derivatives that are 0
     over_V = 0.0
     over_delta = 0.0
@@ -647,30 +665,33 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
         write_field(to.dQ_dV, over_V, n, request)
         write_field(to.dQ_ddelta, over_delta, n, request)
         write_field(to.dQ_domega, over_omega, n, request)
-    change_dQ = change.half_space_dQ + change.cylinder_dQ
-    write_field(to.dM_ddelta, moment_slope(change_dQ, over_delta), n, request)
-    write_field(to.dM_domega, moment_slope(change_dQ, over_omega), n, request)
-    slope = functions.d_um
-    if _is_cover(law.cover_rows):
-        slope += moment_slope_over_V(
-            change.half_space_du + change.cylinder_du, change_dQ, over_V, state
-        )
-    write_field(to.dM_dV, slope, n, request)
-    if bodies:
-        _, _, half_space_slope, cylinder_slope = body_moments(position, u, law)
+    dQ = change.half_space_dQ + change.cylinder_dQ
+    du = change.half_space_du + change.cylinder_du
+    write_field(to.dM_ddelta, moment_slope(dQ, over_delta), n, request)
+    # of each moment: slope over V without traction, what the traction changes, rows of the slopes
+    for slope, by_u, by_Q, to_V, to_omega in (
+        (functions.d_um, du, dQ, to.dM_dV, to.dM_domega),
+        (
+            half_space_slope,
+            change.half_space_du,
+            change.half_space_dQ,
+            to.dM_half_space_dV,
+            to.dM_half_space_domega,
+        ),
+        (
+            cylinder_slope,
+            change.cylinder_du,
+            change.cylinder_dQ,
+            to.dM_cylinder_dV,
+            to.dM_cylinder_domega,
+        ),
+    ):
+        # -0.0 of half-spaces, which changes no bit of a sum
+        by_shear = -0.0
         if _is_cover(law.cover_rows):
-            half_space_slope += moment_slope_over_V(
-                change.half_space_du, change.half_space_dQ, over_V, state
-            )
-            cylinder_slope += moment_slope_over_V(
-                change.cylinder_du, change.cylinder_dQ, over_V, state
-            )
-        write_field(to.dM_half_space_dV, half_space_slope, n, request)
-        write_field(to.dM_cylinder_dV, cylinder_slope, n, request)
-        write_field(
-            to.dM_half_space_domega, moment_slope(change.half_space_dQ, over_omega), n, request
-        )
-        write_field(to.dM_cylinder_domega, moment_slope(change.cylinder_dQ, over_omega), n, request)
+            by_shear = moment_slope_over_V(by_u, by_Q, over_V, state)
+        write_field(to_V, slope + by_shear, n, request)
+        write_field(to_omega, moment_slope(by_Q, over_omega), n, request)
 
 
 @inline_kernel
@@ -684,18 +705,15 @@ def _is_cover(cover_rows):
 
 
 @inline_kernel
-def _write_pairs(c, position, functions, cover_rows, scratch, request):
+def _write_pairs(c, position, cover_rows, scratch, request):
     """Store in the scratch what the rows of a cover give besides at the speed of a state.
 
     c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
-    position, functions : :class:`.law_functions.RowPosition` of u, and
-        :class:`.law_functions.LengthAndMoment` there, of which m and ``scale`` are read.
+    position : :class:`.law_functions.RowPosition` of u.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces, of which delta_0 = 0 alone is written.
-    scratch : (SCRATCH_SIZE,) doubles: u, kappa and V of the state are read.  Written are f and g at
-        _TOTAL, where a moment is requested f_c and g_c at _CYLINDER, and where M of both bodies is
-        requested M without traction at _M_WITHOUT; :func:`_write_cover` and
-        :func:`_write_moment_of_cover` read them.
+    scratch : (SCRATCH_SIZE,) doubles: u of the state is read.  Written are f and g, and where a
+        moment is requested f_c and g_c; :func:`_write_cover` reads them.
     request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
@@ -703,19 +721,14 @@ def _write_pairs(c, position, functions, cover_rows, scratch, request):
         scratch[_FREE_CREEP + c] = 0.0
     else:
         u = scratch[_U + c]
-        # values alone, without derivatives; the second number of a pair is _T after the first
+        # values alone, without derivatives
         total = total_at(position, u, cover_rows)
-        scratch[_TOTAL + c] = total.first
-        scratch[_TOTAL + _T + c] = total.second
+        scratch[_FREE + c] = total.first.value
+        scratch[_EXCESS + c] = total.second.value
         if _asks_for_moments(request):
             cylinder = cylinder_at(total, position, u, cover_rows)
-            scratch[_CYLINDER + c] = cylinder.first
-            scratch[_CYLINDER + _T + c] = cylinder.second
-        if request.to.M >= 0:
-            state = _state(c, scratch, request)
-            # as in _write_moment_of_half_space; Q is not known yet
-            factor = moment_factor(position, u, functions.scale, state)
-            scratch[_M_WITHOUT + c] = factor * functions.m
+            scratch[_FREE_CYLINDER + c] = cylinder.first.value
+            scratch[_EXCESS_CYLINDER + c] = cylinder.second.value
 
 
 @inline_kernel
@@ -735,21 +748,21 @@ def _write_cover(c, cover_rows, scratch, request):
     Returns nothing.
     """
     if cover_rows is not None:
-        total = _values(scratch[_TOTAL + c], scratch[_TOTAL + _T + c])
+        total = _values(scratch[_FREE + c], scratch[_EXCESS + c])
         # of an earlier state where no moment is requested: nothing below reads it then
-        cylinder = _values(scratch[_CYLINDER + c], scratch[_CYLINDER + _T + c])
+        cylinder = _values(scratch[_FREE_CYLINDER + c], scratch[_EXCESS_CYLINDER + c])
         pairs = Pairs(total, cylinder)
         mu = scratch[_MU + c]
         L = scratch[_L + c]
-        scratch[_FREE_CREEP + c] = total.first
+        scratch[_FREE_CREEP + c] = total.first.value
         # 0 for the derivatives of L, here and below: values alone are read, which do not need them
         scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
         if _asks_for_moments(request):
             reaction = shear_reaction(pairs, scratch[_KAPPA + c], mu, L, 0.0, cover_rows)
             scratch[_FACTOR + c] = reaction.half_space
-            scratch[_FACTOR + _T + c] = reaction.cylinder
+            scratch[_CYLINDER_FACTOR + c] = reaction.cylinder
             scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
-            scratch[_FACTOR_EXCESS + _T + c] = reaction.cylinder_excess
+            scratch[_CYLINDER_FACTOR_EXCESS + c] = reaction.cylinder_excess
 
 
 @inline_kernel
@@ -764,35 +777,12 @@ def _asks_for_moments(request):
 @inline_kernel
 def _values(first, second):
     """Return two functions of speed without their slopes, as :class:`.cover_law.PairOverSpeed`."""
-    return PairOverSpeed(first, second, 0.0, 0.0, 0.0, 0.0)
+    return PairOverSpeed(OverSpeed(first, 0.0, 0.0), OverSpeed(second, 0.0, 0.0))
 
 
 @inline_kernel
-def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, request):
-    """Write M of a state on half-spaces, which depends on the speed alone, if it is requested.
-
-    n : int, index of the state in the rows of ``request.out``.
-    c : unsigned int, its column in the scratch.
-    position, functions : :class:`.law_functions.RowPosition` of u, and
-        :class:`.law_functions.LengthAndMoment` there, of which m and ``scale`` are read.
-    scratch : of it u, kappa and V of the state are used.
-    request : :class:`.law_record.Request`; M, in units of P R and of the sign of V, is written into
-        ``out``.
-    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`), and then nothing
-        is written; None for half-spaces.
-    Returns nothing.
-    """
-    if cover_rows is None:
-        # m is M/V and the factor V; in the fast limit, where M/V may underflow, M/(V z) and V z
-        factor = moment_factor(
-            position, scratch[_U + c], functions.scale, _state(c, scratch, request)
-        )
-        write_field(request.to.M, factor * functions.m, n, request)
-
-
-@inline_kernel
-def _write_moment_of_cover(Q, n, c, cover_rows, scratch, request):
-    """Store Q of a state on a cover in the scratch, and write M, which depends on it, if that is
+def _write_traction_on_cover(Q, n, c, cover_rows, scratch, request):
+    """Store Q of a state on a cover in the scratch, and subtract what it changes from M, if that is
     requested.
 
     Q : float, traction, dimensionless.
@@ -800,19 +790,21 @@ def _write_moment_of_cover(Q, n, c, cover_rows, scratch, request):
     c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
     cover_rows : of any cover among those of the block: it is only asked whether it is None, of
         half-spaces, of which nothing is written.
-    scratch : (SCRATCH_SIZE,) doubles: mu, M without traction, and the factors and excesses of Q
-        (:func:`_write_cover`) are read, and Q is written.
-    request : :class:`.law_record.Request`; M, in units of P R, is written into ``out``.
+    scratch : (SCRATCH_SIZE,) doubles: mu, and the factors and excesses of Q (:func:`_write_cover`)
+        are read, and Q is written.
+    request : :class:`.law_record.Request`; M in ``out``, in units of P R, is that without traction
+        before.
     Returns nothing.
     """
     # M = M without traction - Q (factor + excess |Q|/mu), summed over both bodies
     if cover_rows is not None:
         scratch[_Q + c] = Q
-        if request.to.M >= 0:
+        row = request.to.M
+        if row >= 0:
             used = abs(Q) / scratch[_MU + c]
-            factor = scratch[_FACTOR + c] + scratch[_FACTOR + _T + c]
-            factor += (scratch[_FACTOR_EXCESS + c] + scratch[_FACTOR_EXCESS + _T + c]) * used
-            write_field(request.to.M, scratch[_M_WITHOUT + c] - Q * factor, n, request)
+            factor = scratch[_FACTOR + c] + scratch[_CYLINDER_FACTOR + c]
+            factor += (scratch[_FACTOR_EXCESS + c] + scratch[_CYLINDER_FACTOR_EXCESS + c]) * used
+            request.out[np.uint64(row), np.uint64(n + request.first)] -= Q * factor
 
 
 @kernel
@@ -869,16 +861,11 @@ def contact_loop(laws, request, scratch, count):
                 position = _position(_POSITION, c, scratch)
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
-                _write_pairs(c, position, functions, law.cover_rows, scratch, request)
-                _write_moment_of_half_space(
-                    _index(first + k, request),
-                    c,
-                    position,
-                    functions,
-                    law.cover_rows,
-                    scratch,
-                    request,
-                )
+                _write_pairs(c, position, law.cover_rows, scratch, request)
+                # M without traction: m is M/V and the factor V; in the fast limit, where M/V may
+                # underflow, M/(V z) and V z
+                factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
+                write_field(to.M, factor * functions.m, _index(first + k, request), request)
             # ``laws[0]`` for all states in this loop: of the law it is only asked whether it is a
             # cover, and all are or none is
             for k in range(begin, end):
@@ -890,7 +877,7 @@ def contact_loop(laws, request, scratch, count):
                     scratch[_FREE_CREEP + c],
                     scratch[_ASYMMETRY + c],
                     _state(c, scratch, request),
-                    laws[0],
+                    laws[0].cover_rows,
                 )
                 scratch[_D + c] = D
                 scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
@@ -908,10 +895,9 @@ def contact_loop(laws, request, scratch, count):
                         scratch[_MU + c],
                         laws[k % len(laws)],
                     )
-                    write_field(to.Q, Q, _index(first + k, request), request)
-                    _write_moment_of_cover(
-                        Q, _index(first + k, request), c, laws[0].cover_rows, scratch, request
-                    )
+                    n = _index(first + k, request)
+                    write_field(to.Q, Q, n, request)
+                    _write_traction_on_cover(Q, n, c, laws[0].cover_rows, scratch, request)
             if others:
                 for k in range(begin, end):
                     n = _index(first + k, request)

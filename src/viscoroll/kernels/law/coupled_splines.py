@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numerics.jit import inline_kernel
+from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import fma4, load, pack, unpack
 
 # Indices in the head.
@@ -91,25 +91,22 @@ _ONSET_DISTANCE = 1e-24
 #: |t| below which a place counts as this far from D_0: 1/|t| stays finite, and fields, which are
 #: quadratic in t there, are those of D_0 exactly.
 _MIDDLE_DISTANCE = 1e-170
+#: Bisections of d in [-1, 1], to rounding.
+_HALVINGS = 53
 
 
 class Weights(NamedTuple):
-    """Weights of the numbers at both ends of an interval in a spline: of values (a), of slopes (b).
+    """Weights of the numbers at both ends of an interval in a spline.
 
     first : int, number of the row or node at the left end.
-    a0, a1, b0, b1 : weights of value and slope at the left end (0) and the right one (1).
-    da0 ... db1 : their derivatives over u, or over w.
+    values : weights (a0, a1, b0, b1) of the values at the left end (0) and the right one (1), then
+        of the slopes there.
+    slopes : their derivatives over u, or over w.
     """
 
     first: int
-    a0: float
-    a1: float
-    b0: float
-    b1: float
-    da0: float
-    da1: float
-    db0: float
-    db1: float
+    values: tuple
+    slopes: tuple
 
 
 class FieldValue(NamedTuple):
@@ -195,17 +192,9 @@ def _cubic(first, at, dx):
     r = at.r
     slope = 6.0 * s * r * dx * at.inverse  # derivative of a1, and minus that of a0
     # b0 and b1 multiply slopes, and have the factor h; their derivatives over the coordinate none
-    return Weights(
-        first=first,
-        a0=(1.0 + 2.0 * s) * r * r,
-        a1=s * s * (3.0 - 2.0 * s),
-        b0=s * r * r * h,
-        b1=-s * s * r * h,
-        da0=-slope,
-        da1=slope,
-        db0=r * (1.0 - 3.0 * s) * dx,
-        db1=s * (3.0 * s - 2.0) * dx,
-    )
+    values = (1.0 + 2.0 * s) * r * r, s * s * (3.0 - 2.0 * s), s * r * r * h, -s * s * r * h
+    slopes = -slope, slope, r * (1.0 - 3.0 * s) * dx, s * (3.0 * s - 2.0) * dx
+    return Weights(first, values, slopes)
 
 
 @inline_kernel
@@ -219,26 +208,19 @@ def locate_speed(u, table):
     # infinite.  Outside of the nodes two rows are weighted without their slopes.
     rows = np.int64(table[ROWS])
     if u <= table[FIRST]:  # linear in u from row 0, the limit of u = 0
-        part = u / table[FIRST]
+        first = 0
+        right = u / table[FIRST]
+        left = 1.0 - right
         slope = 1.0 / table[FIRST]
-        return Weights(
-            first=0, a0=1.0 - part, a1=part, b0=0.0, b1=0.0, da0=-slope, da1=slope, db0=0.0, db1=0.0
-        )
-    if u >= table[LAST]:  # linear in 1/u to the last row, the limit of u infinite
-        part = table[LAST] / u
-        return Weights(
-            first=rows - 2,
-            a0=part,
-            a1=1.0 - part,
-            b0=0.0,
-            b1=0.0,
-            da0=-part / u,
-            da1=part / u,
-            db0=0.0,
-            db1=0.0,
-        )
-    at = _interval(HEAD, rows - 2, U_STEP, np.log(u), table)
-    return _cubic(at.first + 1, at, 1.0 / u)
+    elif u >= table[LAST]:  # linear in 1/u to the last row, the limit of u infinite
+        first = rows - 2
+        left = table[LAST] / u
+        right = 1.0 - left
+        slope = left / u
+    else:
+        at = _interval(HEAD, rows - 2, U_STEP, np.log(u), table)
+        return _cubic(at.first + 1, at, 1.0 / u)
+    return Weights(first, (left, right, 0.0, 0.0), (-slope, slope, 0.0, 0.0))
 
 
 @inline_kernel
@@ -257,8 +239,10 @@ def edge_at(name, u, speed, table):
     g0 = table[np.uint64(at + 1)]
     f1 = table[np.uint64(at + 2 * EDGE_COUNT)]
     g1 = table[np.uint64(at + 2 * EDGE_COUNT + 1)]
-    value = speed.a0 * f0 + speed.a1 * f1 + speed.b0 * g0 + speed.b1 * g1
-    slope = speed.da0 * f0 + speed.da1 * f1 + speed.db0 * g0 + speed.db1 * g1
+    a0, a1, b0, b1 = speed.values
+    value = a0 * f0 + a1 * f1 + b0 * g0 + b1 * g1
+    da0, da1, db0, db1 = speed.slopes
+    slope = da0 * f0 + da1 * f1 + db0 * g0 + db1 * g1
     # Second derivative over u: of a function linear in u, of one linear in 1/u, and of the cubic in
     # x = ln u, (f'' - f')/u^2 with f' = u slope.
     if u <= table[FIRST]:
@@ -320,23 +304,11 @@ class Cell(NamedTuple):
 
 
 @inline_kernel
-def _values(x):
-    """Return the weights (a0, a1, b0, b1) of :class:`Weights`."""
-    return x.a0, x.a1, x.b0, x.b1
-
-
-@inline_kernel
-def _slopes(x):
-    """Return the weights (da0, da1, db0, db1) of :class:`Weights`."""
-    return x.da0, x.da1, x.db0, x.db1
-
-
-@inline_kernel
 def _corners(rows, nodes):
     """Return the weights of a bicubic Hermite interpolation at the four corners of a cell.
 
-    rows : weights (a0, a1, b0, b1) in the direction of the speed, of :func:`_values` or
-        :func:`_slopes` of a :class:`Weights`: of the values at both rows, then of the slopes there.
+    rows : weights (a0, a1, b0, b1) in the direction of the speed, ``values`` or
+        ``slopes`` of a :class:`Weights`: of the values at both rows, then of the slopes there.
     nodes : the same in the direction of the creepage, (c0, c1, d0, d1).
     Returns four vectors of four numbers, for (row 0, node 0), (row 0, node 1), (row 1, node 0) and
     (row 1, node 1): the weights of value, slope in speed, slope in creepage and mixed derivative.
@@ -366,7 +338,7 @@ def cell_at(speed, place, table):
         at=np.int64(table[FIELDS]) + speed.first * down + place.first * JET,
         down=down,
         plane=np.int64(table[ROWS]) * down,
-        corners=_corners(_values(speed), _values(place)),
+        corners=_corners(speed.values, place.values),
         speed=speed,
         place=place,
     )
@@ -423,10 +395,10 @@ def field_at(name, w, cell, table):
     """
     nodes = _nodes_of(name, cell, table)
     # the weights of a slope: those of derivatives in one direction, of values in the other
-    dw = _combined(_corners(_values(cell.speed), _slopes(cell.place)), nodes)
+    dw = _combined(_corners(cell.speed.values, cell.place.slopes), nodes)
     return FieldValue(
         _combined(cell.corners, nodes) + min(w, 0.0) * dw,
-        _combined(_corners(_slopes(cell.speed), _values(cell.place)), nodes),
+        _combined(_corners(cell.speed.slopes, cell.place.values), nodes),
         dw,
     )
 
@@ -462,3 +434,46 @@ def place_of(D, u, speed, table):
     w = (D - middle.value) / width
     # In dw/du w counts as at most 1, so that it is finite for an infinite D too.
     return Place(sigma, w, 1.0 / width, -(middle.du + min(w, 1.0) * (onset.du - middle.du)) / width)
+
+
+@kernel
+def balance_loop(table, kappa, mu, u, load, of_spin, out):
+    """Find the creepages at which friction balances given loads, by bisection of d = sigma w.
+
+    table : vector of the module.
+    kappa, mu : slenderness and coefficient of friction of each state, > 0, (n,).
+    u : kappa V of each state, >= 0, (n,).
+    load : required value of Q - M_half_space, with ``of_spin`` of Q + M_cylinder, (n,).
+    of_spin : bool, whether the cylinder is balanced, instead of the axis.
+    out : (n, 2), written: 2 kappa delta, within the onsets of full slip; the part of ``load`` that
+        the friction cannot balance, 0 within the onsets.
+    Returns nothing.
+    """
+    for n in range(u.size):
+        speed = locate_speed(u[n], table)
+        low = -1.0
+        high = 1.0
+        d = 0.0
+        found = 0.0
+        # Steps 0 and 1 evaluate both onsets, d = -1 and 1; a load beyond them ends the search
+        # there.
+        for step in range(_HALVINGS + 2):
+            d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
+            sigma = 1.0 if d >= 0.0 else -1.0
+            cell = cell_at(speed, locate_creep(abs(d), sigma, table), table)
+            found = mu[n] * value_at(TRACTION, cell, table)
+            if of_spin:
+                found += value_at(CYLINDER, cell, table) / kappa[n]
+            else:
+                found -= value_at(HALF_SPACE, cell, table) / kappa[n]
+            if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
+                break
+            if step > 1 and found < load[n]:  # the load of friction grows with d
+                low = d
+            elif step > 1:
+                high = d
+        middle = edge_at(MIDDLE, u[n], speed, table).value
+        onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value
+        # 2 kappa delta from w = |d| on the side of d; |d| = 1 exactly only in steps 0 and 1
+        out[n, 0] = middle + abs(d) * (onset - middle)
+        out[n, 1] = load[n] - found if abs(d) == 1.0 else 0.0

@@ -23,7 +23,7 @@ import numpy as np
 
 from ..numerics.jit import inline_kernel, kernel
 from .contact_elements import (
-    add_local,
+    Contact,
     assemble,
     eliminate,
     find_zones,
@@ -80,57 +80,21 @@ _LARGEST_STEP = 2.0
 class Row(NamedTuple):
     """Kernels of both bodies at one speed, dimensionless.
 
-    table : summed over the bodies, (BINS, 2, 3, DEGREE + 1), as :func:`.contact_elements.assemble`
-        takes it.
-    own : the same of the cylinder alone.
-    instant, own_instant : instantaneous compliance of both, and of the cylinder, over the long-time
-        one of both.
+    both, own : kernels (table, instant, local) of :func:`.contact_elements.assemble`, summed over
+        the bodies, and of the cylinder alone.
     coupled : whether shear acts on the pressure.
     split : whether both bodies deform; else all losses are in one.
     cylinder : whether that one is the cylinder.
-    local, own_local : local coupling of both, and of the cylinder, by modes
-        (:func:`.contact_elements.add_local`).
     layer : length of the layer at the front edge in which the material is stiff, divided by l0;
         infinite without one.
     """
 
-    table: Any
+    both: Any
     own: Any
-    instant: float
-    own_instant: float
     coupled: bool
     split: bool
     cylinder: bool
-    local: Any
-    own_local: Any
     layer: float
-
-
-class Contact(NamedTuple):
-    """Arrays of one contact of N elements, in the units of the module.
-
-    Inner node i is node i + 1 of the mesh; element e lies between nodes e and e + 1.
-
-    nodes : (N + 1,), x of the nodes, from -c to c.
-    at : (N,), x of the places of collocation, one in each element.
-    H, T, C : (N, N - 1), slope by pressure, strain by shear and coupling at the places, by the
-        tractions at inner nodes (:func:`.contact_elements.assemble`).
-    p, q : (N - 1,), pressure and shear at inner nodes.
-    strain : (N,), u' at the places.
-    zone : (N - 1,), 0 for stick, 1 or -1 for the sign of the slip, at inner nodes.
-    place : (N + 1,), parameters of the nodes, from 0 to 1 (:func:`.contact_elements.graded`).
-    """
-
-    nodes: Any
-    at: Any
-    H: Any
-    T: Any
-    C: Any
-    p: Any
-    q: Any
-    strain: Any
-    zone: Any
-    place: Any
 
 
 @kernel(allocates=True)
@@ -154,15 +118,14 @@ def new_contact(count):
 
 
 @kernel
-def find_spots(zone, place, width, weight, spots):
+def find_spots(zone, place, spots):
     """Write the spots of a mesh, places at which it is refined, at the edges of the zones of a
     contact; return their number, an int.
 
     zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
-    width, weight : floats, of each spot: width > 0 in the parameter, and number of elements in a
-        factor of e of the distance from it (:func:`.contact_elements.make_mesh`).
-    spots : (MOST_SPOTS, 3), parameter, width and weight, written from the first row on, from the
-        rear edge to the front edge; further edges than it has rows are left out.
+    spots : (MOST_SPOTS, 3), parameter, width and weight of each
+        (:func:`.contact_elements.make_mesh`), written from the first row on, from the rear edge to
+        the front edge; further edges than it has rows are left out.
     """
     used = 0
     # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
@@ -170,27 +133,11 @@ def find_spots(zone, place, width, weight, spots):
         if zone[i] != zone[i + 1] and used < spots.shape[0]:
             # The edge counts as at the node that slips, of two that slip at the rear one.
             spots[used, 0] = place[i + 1] if zone[i] != 0.0 else place[i + 2]
-            spots[used, 1] = width
-            spots[used, 2] = weight
+            # in the parameter, of which an element of an equal mesh has 1/N
+            spots[used, 1] = WIDTH_OF_SPOT / (zone.size + 1)
+            spots[used, 2] = WEIGHT_OF_SPOT
             used += 1
     return used
-
-
-@kernel(allocates=True)
-def carry_zones(zone, place, own, moved):
-    """Write zones of one mesh to the nodes of another: that of the nearest node.
-
-    zone, place : zones at inner nodes, (N - 1,), and parameters of the nodes, (N + 1,), of the
-        first mesh.
-    own : parameters of the nodes of the other, (M + 1,).
-    moved : zones at its inner nodes, (M - 1,), written.  Returns nothing.
-    """
-    i = 0  # nearest inner node of the first mesh, which grows with k
-    for k in range(moved.size):
-        t = own[k + 1]
-        while i + 1 < zone.size and abs(place[i + 2] - t) <= abs(place[i + 1] - t):
-            i += 1
-        moved[k] = zone[i]
 
 
 @kernel(allocates=True)
@@ -200,14 +147,14 @@ def gather(row, contact, c, spots):
 
     row : :class:`Row`, of which ``layer`` is read.
     contact : :class:`Contact`, whose mesh (``nodes``, ``at``, ``place``) is written, and whose
-        zones are carried to it; before, ``place`` and ``zone`` are those of the last mesh.
+        zones are carried to it, each node with the zone of the nearest one before.  Until then
+        ``place`` and ``zone`` are those of the last mesh.
     c : float, half length divided by l0, > 0.
     spots : (MOST_SPOTS, 3), written: the edges first, then the layer if it is thinner than an
         element.
     """
     count = contact.at.size
-    # widths are in the parameter, of which an element of an equal mesh has 1/count
-    edges = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
+    edges = find_spots(contact.zone, contact.place, spots)
     used = edges
     # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
     # c pi^2 (1 - t)^2/2 behind the front edge.
@@ -217,10 +164,15 @@ def gather(row, contact, c, spots):
         spots[used, 1] = thin
         spots[used, 2] = WEIGHT_OF_LAYER
         used += 1
-    zone = contact.zone.copy()  # of the old mesh, since make_mesh and carry_zones overwrite both
+    zone = contact.zone.copy()  # of the old mesh, since both are overwritten
     place = contact.place.copy()
-    make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
-    carry_zones(zone, place, contact.place, contact.zone)
+    make_mesh(c, spots, used, contact)
+    i = 0  # inner node of the old mesh that is nearest to node k of the new one; it grows with k
+    for k in range(zone.size):
+        t = contact.place[k + 1]
+        while i + 1 < zone.size and abs(place[i + 2] - t) <= abs(place[i + 1] - t):
+            i += 1
+        contact.zone[k] = zone[i]
     return edges
 
 
@@ -244,24 +196,23 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     count = contact.at.size
     edges = 0  # number of edges at which the mesh is refined; 0 where the mesh is kept
     if again:
-        scale_mesh(c, contact.nodes, contact.at)
+        scale_mesh(c, contact)
     else:
         edges = gather(row, contact, c, spots)
-    assemble(row.table, row.instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
-    add_local(row.local, contact.nodes, contact.at, contact.C)
-    good, B = eliminate(contact.H, contact.C, contact.at, row.coupled)
+    assemble(row.both, contact)
+    good, B = eliminate(contact, row.coupled)
     if not good:
         return SINGULAR, 0.0, True
-    S = strain_by_shear(contact.T, contact.C, B, row.coupled)
+    S = strain_by_shear(contact, B, row.coupled)
     if math.isinf(d):  # Full slip: the zones are given, and no node sticks, so that d is not read.
-        if not solve_zones(S, B, mu, contact.zone, 0.0, contact.q):
+        if not solve_zones(S, B, mu, 0.0, contact):
             return SINGULAR, 0.0, True
-        return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
-    good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
-    # Edges of the zones of the solution; width and weight, 1.0, are not read.  With a mesh that is
+        return SOLVED, pressure_and_strain(S, B, contact), True
+    good, g = find_zones(S, B, mu, d, contact)
+    # Edges of the zones of the solution.  With a mesh that is
     # kept (edges = 0) the result is of no use, and find_length does not wait for it.
     found = np.empty((MOST_SPOTS, 3))
-    centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
+    centred = find_spots(contact.zone, contact.place, found) == edges
     for k in range(edges):
         centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
     return SOLVED if good else NO_ZONES, g, centred
@@ -323,8 +274,7 @@ def split_powers(row, contact):
         do not belong to its tractions any more.
     Both are floats, in the units of the module.
     """
-    assemble(row.own, row.own_instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
-    add_local(row.own_local, contact.nodes, contact.at, contact.C)
+    assemble(row.own, contact)
     N = contact.at.size
     slope = np.empty(N)
     strain = np.empty(N)
@@ -332,17 +282,13 @@ def split_powers(row, contact):
     for e in range(N):
         slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
         strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
-    return (
-        product(contact.nodes, contact.at, contact.p, slope),
-        product(contact.nodes, contact.at, contact.q, strain),
-    )
+    return product(contact, contact.p, slope), product(contact, contact.q, strain)
 
 
 @kernel(allocates=True)
-def write_state(row, contact, c, g, mu, d, status, out):
+def write_state(contact, c, g, mu, d, status, out):
     """Write the quantities of a solved state, except moment and work of the cylinder alone.
 
-    row : not read.
     contact : solved :class:`Contact`.
     c, g : floats, half length, and distance of the middle ahead of the axis, divided by l0.
     mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
@@ -354,17 +300,16 @@ def write_state(row, contact, c, g, mu, d, status, out):
     """
     total, moment = moments(contact.nodes, contact.p)
     traction, _ = moments(contact.nodes, contact.q)
-    slip = 0.0 if math.isinf(d) else d  # a finite d for the branch of partial slip
     out[0] = 2.0 * c
     out[1] = g / c
     out[2] = traction / (mu * total)
     out[3] = g + moment / total
     # In full slip d is not known here: q u' is integrated as it is, by the linear strain.
     if math.isinf(d):
-        out[4] = 2.0 * product(contact.nodes, contact.at, contact.q, contact.strain) / total
+        out[4] = 2.0 * product(contact, contact.q, contact.strain) / total
     else:
         # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
-        out[4] = 2.0 * (slip * traction - slip_work(contact, slip)) / total
+        out[4] = 2.0 * (d * traction - slip_work(contact, d)) / total
     out[7] = stick_length(contact)
     # The integral of negative pressure: that of inner node i counts for half of the two elements
     # beside it, which lie between the nodes i and i + 2 of the mesh.
@@ -406,7 +351,7 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
         c = math.exp(y)
         # after some meshes the last one is kept: else it could change from length to length
         status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
-        total = write_state(row, contact, c, g, mu, d, status, out)
+        total = write_state(contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
         # A load that is not above 0 counts as e times too small, so that the contact grows.
@@ -550,7 +495,7 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
         finish_state(row, contact, out[n])
         guess = length
         this = n % 2
-        found[this] = find_spots(contact.zone, contact.place, 1.0, 1.0, edges[this])
+        found[this] = find_spots(contact.zone, contact.place, edges[this])
         if 0 < n < creeps.size - 1:
             # linear in ``at``: ln of the half length (column 9), and the edges if as many as before
             ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)

@@ -157,7 +157,7 @@ def fast_lengths(lam, shift, u, cover_rows):
     """
     if cover_rows is None:
         return lam, shift
-    return cover_rows[LAM_LIMIT] + cover_rows[LAM_LIMIT + 1] / u, cover_rows[EPSILON_LIMIT] / u
+    return _limit_at(LAM_LIMIT, u, cover_rows).value, cover_rows[EPSILON_LIMIT] / u
 
 
 @inline_kernel
@@ -173,105 +173,7 @@ def fast_eta_over_F(eta_over_F, v, cover_rows):
     """
     if cover_rows is None:
         return eta_over_F
-    return cover_rows[ETA_OVER_F_LIMIT] + cover_rows[ETA_OVER_F_LIMIT + 1] / v
-
-
-class PairOverSpeed(NamedTuple):
-    """Two functions of u = kappa |V| at one speed, with their first and second derivatives over u,
-    dimensionless.
-    """
-
-    first: float
-    second: float
-    first_slope: float
-    second_slope: float
-    first_curvature: float
-    second_curvature: float
-
-
-@inline_kernel
-def _pair_at(offset, position, cover_rows):
-    """Return two functions of a cover at one speed, with their derivatives over u, as
-    :class:`PairOverSpeed`.
-
-    offset : int, offset of the pair in a row: TOTAL, CYLINDER or TILT.
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law, not beyond the last.
-    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
-    """
-    # cover rows have a head shorter than a row: row 0 is directly behind it
-    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + offset
-    first, second, first_slope, second_slope, first_curvature, second_curvature = (
-        evaluate_short_pair(cover_rows, start, position.t)
-    )
-    slope = position.dt_dx
-    curvature = slope * slope
-    return PairOverSpeed(
-        first=first,
-        second=second,
-        first_slope=first_slope * slope,
-        second_slope=second_slope * slope,
-        first_curvature=first_curvature * curvature,
-        second_curvature=second_curvature * curvature,
-    )
-
-
-@inline_kernel
-def _limits_at(first, second, u, cover_rows):
-    """Return two functions beyond the last row of the law, each a limit and a term in 1/u, as
-    :class:`PairOverSpeed`.
-
-    first, second : int, indices in the head of their limits for u -> infinity; the coefficient of
-        1/u follows each.
-    u : float, kappa |V|, dimensionless, > 0 and finite.
-    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
-    """
-    first_change = cover_rows[first + 1] / u
-    second_change = cover_rows[second + 1] / u
-    # of a + b/u: slope -b/u^2, curvature 2 b/u^3
-    return PairOverSpeed(
-        first=cover_rows[first] + first_change,
-        second=cover_rows[second] + second_change,
-        first_slope=-first_change / u,
-        second_slope=-second_change / u,
-        first_curvature=2.0 * first_change / (u * u),
-        second_curvature=2.0 * second_change / (u * u),
-    )
-
-
-@inline_kernel
-def _weighted_sum(a, weight, b):
-    """Return a + weight b of two :class:`PairOverSpeed`; ``weight``: float."""
-    return PairOverSpeed(
-        first=a.first + weight * b.first,
-        second=a.second + weight * b.second,
-        first_slope=a.first_slope + weight * b.first_slope,
-        second_slope=a.second_slope + weight * b.second_slope,
-        first_curvature=a.first_curvature + weight * b.first_curvature,
-        second_curvature=a.second_curvature + weight * b.second_curvature,
-    )
-
-
-@inline_kernel
-def free_creep_at(position, u, cover_rows):
-    """Return 2 kappa delta_0, from the creepage delta_0 of free rolling, with its derivatives over
-    u.
-
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law; beyond the last row
-        the value is a limit and a term in 1/u.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
-    half-spaces.
-    Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; a
-    cover on the cylinder has the other sign than the same on the base; all are 0.0 for half-spaces.
-    """
-    return free_creep_of(pairs_at(position, u, cover_rows))
-
-
-@inline_kernel
-def free_creep_of(pairs):
-    """Return what :func:`free_creep_at` does, from the ``pairs`` of :func:`pairs_at`."""
-    total = pairs.total
-    return total.first, total.first_slope, total.first_curvature
+    return _limit_at(ETA_OVER_F_LIMIT, v, cover_rows).value
 
 
 class OverSpeed(NamedTuple):
@@ -282,10 +184,56 @@ class OverSpeed(NamedTuple):
     curvature: float
 
 
+class PairOverSpeed(NamedTuple):
+    """Two functions of u = kappa |V| at one speed."""
+
+    first: OverSpeed
+    second: OverSpeed
+
+
 @inline_kernel
-def _inverse_width(mu, L):
-    """Return 1/(mu L), a float: that of 2 kappa delta_star."""
-    return 1.0 / (mu * L)
+def _pair_at(offset, position, cover_rows):
+    """Return two functions of a cover at one speed, as :class:`PairOverSpeed`.
+
+    offset : int, offset of the pair in a row: TOTAL, CYLINDER or TILT.
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law, not beyond the last.
+    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
+    """
+    # cover rows have a head shorter than a row: row 0 is directly behind it
+    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + offset
+    first, second, d_first, d_second, dd_first, dd_second = evaluate_short_pair(
+        cover_rows, start, position.t
+    )
+    slope = position.dt_dx
+    curvature = slope * slope
+    return PairOverSpeed(
+        OverSpeed(first, d_first * slope, dd_first * curvature),
+        OverSpeed(second, d_second * slope, dd_second * curvature),
+    )
+
+
+@inline_kernel
+def _limit_at(index, u, cover_rows):
+    """Return a function beyond the last row of the law, a limit and a term in 1/u, as
+    :class:`OverSpeed`.
+
+    index : int, index in the head of the limit for u -> infinity; the coefficient of 1/u follows.
+    u : float, kappa |V|, dimensionless, > 0; of a function of v it is v.
+    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
+    """
+    change = cover_rows[index + 1] / u
+    # of a + b/u: slope -b/u^2, curvature 2 b/u^3
+    return OverSpeed(cover_rows[index] + change, -change / u, 2.0 * change / (u * u))
+
+
+@inline_kernel
+def _weighted_sum(a, weight, b):
+    """Return a + weight b of two :class:`OverSpeed`; ``weight``: float."""
+    return OverSpeed(
+        a.value + weight * b.value,
+        a.slope + weight * b.slope,
+        a.curvature + weight * b.curvature,
+    )
 
 
 @inline_kernel
@@ -297,10 +245,11 @@ def _relative_excess(total, mu, L, dL, ddL):
     L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u, dimensionless.
     """
     # r = 2 g/(mu L); from r L = 2 g/mu, r' L + r L' = 2 g'/mu, and likewise the second derivative.
-    bound = 2.0 * _inverse_width(mu, L)
-    value = bound * total.second
-    slope = bound * total.second_slope - value * dL / L
-    curvature = bound * total.second_curvature
+    excess = total.second
+    bound = 2.0 * (1.0 / (mu * L))
+    value = bound * excess.value
+    slope = bound * excess.slope - value * dL / L
+    curvature = bound * excess.curvature
     return OverSpeed(value, slope, curvature - (2.0 * slope * dL + value * ddL) / L)
 
 
@@ -352,8 +301,9 @@ def pairs_at(position, u, cover_rows):
     half-spaces.
     """
     if cover_rows is None:
-        zero = PairOverSpeed(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        return Pairs(zero, zero)
+        zero = OverSpeed(0.0, 0.0, 0.0)
+        none = PairOverSpeed(zero, zero)
+        return Pairs(none, none)
     total = total_at(position, u, cover_rows)
     return Pairs(total, cylinder_at(total, position, u, cover_rows))
 
@@ -368,9 +318,12 @@ def total_at(position, u, cover_rows):
     """
     # rows have the sum, the head both parts
     if position.row < 0:
-        base = _limits_at(FREE_HALF_SPACE_LIMIT, EXCESS_HALF_SPACE_LIMIT, u, cover_rows)
-        cylinder = _limits_at(FREE_CYLINDER_LIMIT, EXCESS_CYLINDER_LIMIT, u, cover_rows)
-        return _weighted_sum(base, 1.0, cylinder)
+        free = _limit_at(FREE_HALF_SPACE_LIMIT, u, cover_rows)
+        excess = _limit_at(EXCESS_HALF_SPACE_LIMIT, u, cover_rows)
+        return PairOverSpeed(
+            _weighted_sum(free, 1.0, _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows)),
+            _weighted_sum(excess, 1.0, _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows)),
+        )
     return _pair_at(TOTAL, position, cover_rows)
 
 
@@ -387,10 +340,16 @@ def cylinder_at(total, position, u, cover_rows):
     # +-0.5.
     part = cover_rows[CYLINDER_PART]
     if part > -0.5:  # One body alone has a layer: all is the cylinder's, or nothing.
-        zero = PairOverSpeed(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        return _weighted_sum(zero, 1.0 if part > 0.5 else 0.0, total)
+        zero = OverSpeed(0.0, 0.0, 0.0)
+        weight = 1.0 if part > 0.5 else 0.0
+        return PairOverSpeed(
+            _weighted_sum(zero, weight, total.first), _weighted_sum(zero, weight, total.second)
+        )
     if position.row < 0:
-        return _limits_at(FREE_CYLINDER_LIMIT, EXCESS_CYLINDER_LIMIT, u, cover_rows)
+        return PairOverSpeed(
+            _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows),
+            _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows),
+        )
     return _pair_at(CYLINDER, position, cover_rows)
 
 
@@ -490,22 +449,15 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
     half-spaces: all is 0.
     """
     if cover_rows is None:
-        return Reaction(
-            half_space=0.0,
-            cylinder=0.0,
-            half_space_excess=0.0,
-            cylinder_excess=0.0,
-            half_space_slope=0.0,
-            cylinder_slope=0.0,
-            half_space_excess_slope=0.0,
-            cylinder_excess_slope=0.0,
-        )
+        return Reaction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     total, cylinder = pairs
-    base = _weighted_sum(total, -1.0, cylinder)  # f_b and g_b
+    f_c, g_c = cylinder
+    f_b = _weighted_sum(total.first, -1.0, f_c)
+    g_b = _weighted_sum(total.second, -1.0, g_c)
     # Divisors of the module's equations, 2 kappa and 2 kappa + f_b + f_c, inverted.
     on_base = 0.5 / kappa
-    on_cylinder = 1.0 / (2.0 * kappa + total.first)
-    on_cylinder_slope = -on_cylinder * on_cylinder * total.first_slope
+    on_cylinder = 1.0 / (2.0 * kappa + total.first.value)
+    on_cylinder_slope = -on_cylinder * on_cylinder * total.first.slope
     # g/s is r of the module: the limiter is (1 + r^4)^(-1/4), with the slope -r^3 r' (1 + r^4)^-1
     # times itself; values alone need no slope of L, which callers then give as 0.
     ratio = _relative_excess(total, mu, L, dL, 0.0)
@@ -513,18 +465,16 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
     rest = 1.0 / (1.0 + cube * ratio.value)
     limiter = np.sqrt(np.sqrt(rest))
     limiter_slope = -limiter * rest * cube * ratio.slope
-    excess_slope = limiter * cylinder.second_slope + limiter_slope * cylinder.second
+    excess_slope = limiter * g_c.slope + limiter_slope * g_c.value
     return Reaction(
-        half_space=on_base * base.first,
-        cylinder=on_cylinder * cylinder.first,
-        half_space_excess=on_base * limiter * base.second,
-        cylinder_excess=on_cylinder * limiter * cylinder.second,
-        half_space_slope=on_base * base.first_slope,
-        cylinder_slope=on_cylinder * cylinder.first_slope + on_cylinder_slope * cylinder.first,
-        half_space_excess_slope=on_base
-        * (limiter * base.second_slope + limiter_slope * base.second),
-        cylinder_excess_slope=on_cylinder * excess_slope
-        + on_cylinder_slope * limiter * cylinder.second,
+        half_space=on_base * f_b.value,
+        cylinder=on_cylinder * f_c.value,
+        half_space_excess=on_base * limiter * g_b.value,
+        cylinder_excess=on_cylinder * limiter * g_c.value,
+        half_space_slope=on_base * f_b.slope,
+        cylinder_slope=on_cylinder * f_c.slope + on_cylinder_slope * f_c.value,
+        half_space_excess_slope=on_base * (limiter * g_b.slope + limiter_slope * g_b.value),
+        cylinder_excess_slope=on_cylinder * excess_slope + on_cylinder_slope * limiter * g_c.value,
     )
 
 
@@ -578,34 +528,12 @@ def length_change(Q, position, u, cover_rows):
     if cover_rows is None:
         return 0.0, 0.0
     if position.row < 0:
-        tilt = _limits_at(LAM_SLOPE_LIMIT, EPSILON_SLOPE_LIMIT, u, cover_rows)
+        tilt = PairOverSpeed(
+            _limit_at(LAM_SLOPE_LIMIT, u, cover_rows), _limit_at(EPSILON_SLOPE_LIMIT, u, cover_rows)
+        )
     else:
         tilt = _pair_at(TILT, position, cover_rows)
-    return Q * tilt.first, Q * tilt.second
-
-
-@inline_kernel
-def creep_of_state(D, delta, L, free_creep, asymmetry, state, cover_rows):
-    """Return L |d| of a state on a cover with the sign of the traction, and infinite in full slip.
-
-    D : float, the same of half-spaces, which is the result if ``cover_rows`` is None.
-    delta : float, creepage (omega - V)/V, dimensionless; infinite at V = 0 if omega is given and
-    not 0.
-    L, free_creep, asymmetry : floats, 2 kappa delta_star/mu, 2 kappa delta_0, with delta_0 the
-        creepage without creep force, and c, dimensionless; read of a cover alone.
-    state : :class:`.law_record.State`, of which kappa, mu and the sign of V are read, of a cover
-    alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
-    half-spaces.
-    Returns a float, dimensionless; V = 0.0 and -0.0 count as V > 0.
-    """
-    if cover_rows is None:
-        return D
-    # 0 exactly where the creepage is that of free rolling, as a field gives it: delta_0 is formed
-    # by the operations of the field, in their order
-    beyond = delta - 0.5 * free_creep / state.kappa
-    d = reduced_creep(2.0 * state.kappa * _inverse_width(state.mu, L) * beyond, asymmetry)
-    return np.copysign(np.inf if abs(d) >= 1.0 else L * abs(d), -d if state.V < 0.0 else d)
+    return Q * tilt.first.value, Q * tilt.second.value
 
 
 @inline_kernel
@@ -633,27 +561,6 @@ def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
 
 
 @inline_kernel
-def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
-    """Return dQ/dV at fixed creepage delta, from that at fixed delta - delta_0, the creepage less
-    that of free rolling.
-
-    A cover's delta_0 changes with the speed, so that the traction changes too while delta stays.  Q
-    is in units of P.
-
-    dQ_dV : float, slope at fixed delta - delta_0, dimensionless.
-    dQ_ddelta : float, slope over the creepage for motion with V > 0, dimensionless, >= 0.
-    free_slope : float, slope of 2 kappa delta_0 over u = kappa |V|, dimensionless.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None, for
-        half-spaces, leaves dQ_dV as it is.
-    Returns a float, dimensionless.
-    """
-    if cover_rows is None:
-        return dQ_dV
-    # d delta_0/dV = (du/dV)/(2 kappa) d(2 kappa delta_0)/du, with du/dV = kappa for V > 0.
-    return dQ_dV - 0.5 * dQ_ddelta * free_slope
-
-
-@inline_kernel
 def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
     """Return what the creepage without creep force adds to the kinematics of partial slip at one
     speed.
@@ -671,14 +578,14 @@ def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
     """
     if cover_rows is None:
         return FreeCreep(-0.0, -0.0, -0.0)
-    value, slope, second_derivative = free_creep_of(pairs)
+    value, slope, curvature = pairs.total.first
     # with u delta_0 = u f/(2 kappa): its derivatives over u are (f + u f')/(2 kappa) and
     # (2 f' + u f'')/(2 kappa); d(V delta_0)/dV is the first of them
     factor = 0.5 / kappa
     return FreeCreep(
         factor * value,
         factor * (value + u * slope) / (k * uL_slope),
-        factor * (2.0 * slope + u * second_derivative) / k,
+        factor * (2.0 * slope + u * curvature) / k,
     )
 
 

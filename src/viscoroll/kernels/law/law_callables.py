@@ -39,7 +39,7 @@ from .contact_kernel import (
     stick_argument,
     traction_on_moments,
 )
-from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE, asymmetry_at, free_creep_of, pairs_at
+from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE, asymmetry_at, pairs_at
 from .law_functions import body_moments, length_and_moment, locate_row, moment_factor
 from .law_record import PARTS_PER_ROW, ROW_SIZE, Law, State
 
@@ -147,9 +147,9 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
     pairs = pairs_at(position, u, cover_rows)  # zeros of half-spaces, as what follows from them
-    free_creep = free_creep_of(pairs)[0]
+    free_creep = pairs.total.first.value
     c = asymmetry_at(pairs, state.mu, functions.L, functions.dL, functions.ddL, cover_rows).value
-    D = signed_creep(functions.L, free_creep, c, state, law)
+    D = signed_creep(functions.L, free_creep, c, state, cover_rows)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
     # What the traction changes in the moments: nothing of half-spaces, where it is -0.0, which
@@ -201,30 +201,34 @@ def pack_scenes(
         caller, a float: a dimensionless number times it is the caller's.
     Returns an array of shape (2,) and dtype SCENE.  Raises KeyError if ``scale`` lacks a name.
     """
-    # In the order of the fields of SCENE; row_count, the third of ``arrays``, includes the head.
     cover_rows = law.cover_rows
     function, address = (
         (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)
     )
+    # row_count, the third of the arrays, includes the head
     arrays = law.rows.ctypes.data, law.marks.ctypes.data, law.rows.size // ROW_SIZE, address
-    numbers = unlike, *arrays, kappa, mu, *(scale[name] for name in ("V", "omega", "Q", "M"))
-    return np.array(
-        [(c_function_address(function, SCENE), slopes, *numbers) for slopes in (0, 1)], SCENE
-    )
+    return pack_records(function, SCENE, (unlike, *arrays), kappa, mu, scale)
 
 
-def c_function_address(function, record: np.dtype) -> int:
-    """Return the address of the machine code of a kernel for calls from C; the kernel is compiled
-    if it is not yet.
+def pack_records(
+    function, record: np.dtype, arrays: tuple, kappa: float, mu: float, scale: Mapping[str, float]
+) -> NDArray[Any]:
+    """Return the user data for a C function: two records, without slopes and with slopes.
 
     function : the kernel (V, omega, pointer to results, pointer to a record) -> status, numba's
-        dispatcher.
-    record : numpy dtype of the record.
-    Returns an int, valid in this process; a further call returns the same.  Raises numba's error if
-    the kernel cannot be compiled for these types.
+        dispatcher, which is compiled here if it is not yet.
+    record : numpy dtype of the record: address of the C function, valid in this process, whether
+        slopes are asked for, the fields of ``arrays``, kappa, mu, and 1 of V, omega, Q and M.
+    arrays : addresses and sizes of arrays, ints.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
+    scale : as of :func:`pack_scenes`.
+    Returns an array of shape (2,) and dtype ``record``.  Raises KeyError if ``scale`` lacks a name,
+    numba's error if the kernel cannot be compiled for these types.
     """
-    arguments = types.float64, types.float64, types.CPointer(types.float64)
-    return function_address(function, record, types.int32, *arguments)
+    results = types.CPointer(types.float64)
+    address = function_address(function, record, types.int32, types.float64, types.float64, results)
+    numbers = *arrays, kappa, mu, *(scale[name] for name in ("V", "omega", "Q", "M"))
+    return np.array([(address, slopes, *numbers) for slopes in (0, 1)], record)
 
 
 # --- The law of one scene for jitted code ---

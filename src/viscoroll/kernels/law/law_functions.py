@@ -50,7 +50,7 @@ import numpy as np
 from ..numerics.intrinsics import bits_to_float, float_to_bits, unlikely
 from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import evaluate_pair, evaluate_secants, evaluate_single
-from .cover_law import fast_eta_over_F, fast_lengths, fast_moment, free_creep_at
+from .cover_law import fast_eta_over_F, fast_lengths, fast_moment, pairs_at
 from .law_record import (
     ALPHA,
     BODY_MOMENTS,
@@ -298,14 +298,12 @@ def free_creep_and_slopes(u, law):
     """Return 2 kappa delta_0, from the creepage without creep force, with its first two derivatives
     over u.
 
-    It is :func:`.cover_law.free_creep_at` for callers that have not located u.
-
     u : float, kappa |V|, dimensionless, >= 0.
     law : :class:`.law_record.Law` of the material, of which marks and ``cover_rows`` are read.
-    Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; 0.0
-    each of half-spaces, at no cost.
+    Returns :class:`.cover_law.OverSpeed`, dimensionless, of either sign; a cover on the cylinder
+    has the other sign than the same on the base; 0.0 each of half-spaces, at no cost.
     """
-    return free_creep_at(locate_row(u, law), u, law.cover_rows)
+    return pairs_at(locate_row(u, law), u, law.cover_rows).total.first
 
 
 @inline_kernel
@@ -323,7 +321,7 @@ def limits_at_rest(kappa, law):
     if law.cover_rows is None:
         return 1.0, -0.0
     position = locate_row(0.0, law)  # row 0, t = 0: limits are the constants of its polynomials
-    free_creep = free_creep_at(position, 0.0, law.cover_rows)[0]
+    free_creep = pairs_at(position, 0.0, law.cover_rows).total.first.value
     return length_and_moment(position, 0.0, law).L, 0.5 * free_creep / kappa
 
 

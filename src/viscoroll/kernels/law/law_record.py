@@ -44,7 +44,7 @@ Fields = namedtuple(
 #: costs little for each, and few enough that their scratch stays in the first cache.
 TOGETHER = 64
 #: Numbers of the scratch of :func:`.contact_kernel.contact_loop`.
-SCRATCH_SIZE = 26 * TOGETHER
+SCRATCH_SIZE = 25 * TOGETHER
 
 
 class State(NamedTuple):
@@ -127,6 +127,19 @@ def write_field(row, value, n, request):
     if row >= 0:
         # unsigned: numba would test signed indices for negative ones
         request.out[np.uint64(row), np.uint64(n + request.first)] = value
+
+
+@inline_kernel
+def asks_for_slopes(to):
+    """Return whether slopes are requested: of Q, of M, and of the moment of a body, three bools.
+
+    to : :class:`Fields` of a :class:`Request`, -1 where a quantity is not requested.
+    """
+    of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega)
+    of_M = max(to.dM_dV, to.dM_ddelta, to.dM_domega)
+    of_half_space = max(to.dM_half_space_dV, to.dM_half_space_domega)
+    of_cylinder = max(to.dM_cylinder_dV, to.dM_cylinder_domega)
+    return of_Q >= 0, of_M >= 0, max(of_half_space, of_cylinder) >= 0
 
 
 @inline_kernel

@@ -27,7 +27,6 @@ from .coupled_splines import (
     HALF_SPACE,
     LENGTH,
     LIMIT,
-    MIDDLE,
     MOST,
     ONSET,
     SHIFT,
@@ -42,8 +41,8 @@ from .coupled_splines import (
     place_of,
     value_at,
 )
-from .law_callables import RESULTS, Jitted, c_function_address, refuse
-from .law_record import read_state, slip_and_creepage, write_field
+from .law_callables import RESULTS, Jitted, pack_records, refuse
+from .law_record import asks_for_slopes, read_state, slip_and_creepage, write_field
 
 # --- A tensor spline over V, delta and alpha at one point ---
 
@@ -185,17 +184,19 @@ def _basis(spline, position, n):
     )
 
 
-@inline_kernel
-def evaluate(spline, V, delta, alpha):
-    """Return the :class:`Value` of a field at a point, for kernels that inline it.
+@kernel
+def spline_at(spline, V, delta, alpha):
+    """Return the :class:`Value` of a field at a point: value and slopes over V, delta and alpha, in
+    the units of the grid.
 
-    spline : vector of the spline: bounds, axes and coefficients.
-    V, delta, alpha : float, coordinates in the units of the grid.  A coordinate on which the field
-        does not depend is ignored.
+    spline : vector of doubles of :meth:`viscoroll.tables.Interpolant.jitted`: bounds, axes and
+        coefficients.
+    V, delta, alpha : float, coordinates in the units of the grid.  Where the field does not depend
+        on one of them, that argument is ignored, and any number may be given.
 
-    Returns value and slopes over V, delta and alpha, floats in the units of the grid: all NaN if a
-    coordinate is NaN or outside of its axis; a value beyond the bounds of the field is clipped to
-    them, and all its slopes are 0.  The slope over a coordinate that is ignored is 0.
+    Returns NaN, the slopes too, if a coordinate that is not ignored is NaN or outside of its axis.
+    A value beyond the bounds of the field is clipped to them, and its slopes are 0.  The slope over
+    a coordinate that is ignored is 0.
     """
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)
@@ -226,35 +227,12 @@ def evaluate(spline, V, delta, alpha):
     return Value(value, dV, ddelta, dalpha)
 
 
-@kernel
-def spline_at(spline, V, delta, alpha):
-    """Return the :class:`Value` of a field at a point: value and slopes over V, delta and alpha, in
-    the units of the grid.
-
-    It is :func:`evaluate` for callers outside of this folder, compiled once.
-
-    spline : vector of doubles of :meth:`viscoroll.tables.Interpolant.jitted`: bounds, axes and
-        coefficients.
-    V, delta, alpha : float, coordinates in the units of the grid.  Where the field does not depend
-        on one of them, that argument is ignored, and any number may be given.
-
-    Returns NaN, the slopes too, if a coordinate that is not ignored is NaN or outside of its axis.
-    A value beyond the bounds of the field is clipped to them, and its slopes are 0.  The slope over
-    a coordinate that is ignored is 0.
-    """
-    return evaluate(spline, V, delta, alpha)
-
-
 # --- The law of a table (coupled_splines) at states ---
 
 #: User data.  function: address of the C function.  slopes: whether slopes are asked for.  table,
 #: size: address and length of the table.  kappa, mu: of the scene.  V, omega, Q, M: 1 of each in
 #: the units of the caller.
 TABLE = record_type("function slopes table size", "kappa mu V omega Q M")
-
-
-#: Bisections of d in [-1, 1], to rounding.
-_HALVINGS = 53
 
 
 class Load(NamedTuple):
@@ -341,19 +319,22 @@ def _traction(mu, at, table):
 
 
 @inline_kernel
-def _sloped_traction(mu, kappa, at, table):
-    """Return Q of one state with its slopes, a :class:`Load`.
+def _sloped_loads(mu, kappa, at, table):
+    """Return Q and the moments of half-space and cylinder of one state with their slopes, three
+    :class:`Load`.
 
     mu, kappa : floats, coefficient of friction and slenderness, > 0.
     at : :class:`TablePlace`, the state in the table.
     table : vector of :mod:`.coupled_splines`.
-    The slopes are 0 where |Q| is limited to mu times the entry LIMIT of the table, so also in full
-    slip; an infinite LIMIT limits nothing.
+    The slopes of Q are 0 where |Q| is limited to mu times the entry LIMIT of the table, so also in
+    full slip; an infinite LIMIT limits nothing.
     """
-    value = _traction(mu, at, table)
-    if abs(value) >= mu * table[LIMIT]:
-        return Load(value, 0.0, 0.0)
-    return _load(TRACTION, mu, kappa, at, table)
+    Q = _load(TRACTION, mu, kappa, at, table)
+    limited = _traction(mu, at, table)
+    if abs(limited) >= mu * table[LIMIT]:
+        Q = Load(limited, 0.0, 0.0)
+    half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
+    return Q, half_space, _load(CYLINDER, 1.0 / kappa, kappa, at, table)
 
 
 @inline_kernel
@@ -409,7 +390,7 @@ def _write_state(table, given, n, request):
     n : int, index of the state, >= 0; its column of ``out`` is n + ``request.first``.
     request : :class:`.law_record.Request`: of ``out`` the rows that ``to`` names are written,
         dimensionless: creepages, lengths, Q in units of P, moments in units of P R and their
-        slopes.  Slopes of the moments of the bodies are written only beside one of Q or M.
+        slopes.
     Returns nothing.
     """
     to = request.to
@@ -450,7 +431,8 @@ def _write_state(table, given, n, request):
         write_field(to.M, half_space + cylinder, n, request)
         write_field(to.M_half_space, half_space, n, request)
         write_field(to.M_cylinder, cylinder, n, request)
-    if max(to.dQ_ddelta, to.dQ_dV, to.dQ_domega, to.dM_ddelta, to.dM_dV, to.dM_domega) >= 0:
+    of_Q, of_M, of_bodies = asks_for_slopes(to)
+    if of_Q or of_M or of_bodies:
         _write_slopes(table, given, at, delta, n, request)
 
 
@@ -469,11 +451,7 @@ def _write_slopes(table, given, at, delta, n, request):
     Returns nothing.
     """
     to = request.to
-    V = given.V
-    kappa = given.kappa
-    Q = _sloped_traction(given.mu, kappa, at, table)
-    half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
-    cylinder = _load(CYLINDER, 1.0 / kappa, kappa, at, table)
+    Q, half_space, cylinder = _sloped_loads(given.mu, given.kappa, at, table)
     M = Load(
         half_space.value + cylinder.value,
         half_space.dV + cylinder.dV,
@@ -490,7 +468,7 @@ def _write_slopes(table, given, at, delta, n, request):
         (half_space, to.dM_half_space_dV, to.dM_half_space_domega),
         (cylinder, to.dM_cylinder_dV, to.dM_cylinder_domega),
     ):
-        dV, domega = _at_fixed_omega(load, V, delta)
+        dV, domega = _at_fixed_omega(load, given.V, delta)
         write_field(over_V, dV if fixed else load.dV, n, request)
         write_field(over_omega, domega, n, request)
 
@@ -547,10 +525,7 @@ def _slopes_to_caller(scene, V, delta, at, table, out):
     Returns nothing.
     """
     # a slope in the units of the caller: times the unit of the load over that of V or omega
-    kappa = scene.kappa
-    Q = _sloped_traction(scene.mu, kappa, at, table)
-    half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
-    cylinder = _load(CYLINDER, 1.0 / kappa, kappa, at, table)
+    Q, half_space, cylinder = _sloped_loads(scene.mu, scene.kappa, at, table)
     dQ_dV, dQ_domega = _at_fixed_omega(Q, V, delta)
     half_space_dV, half_space_domega = _at_fixed_omega(half_space, V, delta)
     cylinder_dV, cylinder_domega = _at_fixed_omega(cylinder, V, delta)
@@ -572,59 +547,5 @@ def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
         caller, a float: a dimensionless number times it is the caller's.
     Raises KeyError if ``scale`` lacks a name.  The C function is compiled here if it is not yet.
     """
-    # two records of user data: without slopes, then with them (Jitted); the fields in the order of
-    # TABLE
-    function = c_function_address(_table_law, TABLE)
-    numbers = (
-        table.ctypes.data,
-        table.size,
-        kappa,
-        mu,
-        *(scale[name] for name in ("V", "omega", "Q", "M")),
-    )
-    return Jitted(
-        np.array([(function, slopes, *numbers) for slopes in (0, 1)], TABLE), (table, owner)
-    )
-
-
-@kernel
-def balance_loop(table, kappa, mu, u, load, of_spin, out):
-    """Find the creepages at which friction balances given loads, by bisection of d = sigma w.
-
-    table : vector of :mod:`.coupled_splines`.
-    kappa, mu : slenderness and coefficient of friction of each state, > 0, (n,).
-    u : kappa V of each state, >= 0, (n,).
-    load : required value of Q - M_half_space, with ``of_spin`` of Q + M_cylinder, (n,).
-    of_spin : bool, whether the cylinder is balanced, instead of the axis.
-    out : (n, 2), written: 2 kappa delta, within the onsets of full slip; the part of ``load`` that
-        the friction cannot balance, 0 within the onsets.
-    Returns nothing.
-    """
-    for n in range(u.size):
-        speed = locate_speed(u[n], table)
-        low = -1.0
-        high = 1.0
-        d = 0.0
-        found = 0.0
-        # Steps 0 and 1 evaluate both onsets, d = -1 and 1; a load beyond them ends the search
-        # there.
-        for step in range(_HALVINGS + 2):
-            d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
-            sigma = 1.0 if d >= 0.0 else -1.0
-            cell = cell_at(speed, locate_creep(abs(d), sigma, table), table)
-            found = mu[n] * value_at(TRACTION, cell, table)
-            if of_spin:
-                found += value_at(CYLINDER, cell, table) / kappa[n]
-            else:
-                found -= value_at(HALF_SPACE, cell, table) / kappa[n]
-            if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
-                break
-            if step > 1 and found < load[n]:  # the load of friction grows with d
-                low = d
-            elif step > 1:
-                high = d
-        middle = edge_at(MIDDLE, u[n], speed, table).value
-        onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value
-        # 2 kappa delta from w = |d| on the side of d; |d| = 1 exactly only in steps 0 and 1
-        out[n, 0] = middle + abs(d) * (onset - middle)
-        out[n, 1] = load[n] - found if abs(d) == 1.0 else 0.0
+    records = pack_records(_table_law, TABLE, (table.ctypes.data, table.size), kappa, mu, scale)
+    return Jitted(records, (table, owner))

@@ -12,18 +12,33 @@ kernels, the same bits, in some three times the time.
 
 import gc
 import warnings
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from functools import lru_cache
 from typing import Any, Callable
+from unittest import mock
 
 import numba
-from numba.core import base, types
+from numba.core import base, event, ir, lowering, typeinfer, types
 from numba.core.compiler import Compiler
 
 from .cache_folder import announce_compiling
 
 #: Whether kernels are compiled in this way; False after a failure.
 _deferring = True
+#: Types of arguments of which the signature of a call is remembered; numba's ``Omitted`` are
+#: constants.
+_OF_NUMBERS = frozenset(
+    (
+        types.Float,
+        types.Integer,
+        types.Boolean,
+        types.IntegerLiteral,
+        types.BooleanLiteral,
+        types.Omitted,
+    )
+)
+#: Values of numba's statements that contain variables; those of its class Inst alone have methods.
+_WITH_VARIABLES = (ir.Inst, list, tuple, dict)
 #: Passes of numba that search a kernel for what kernels do not have: closures, overloads to be
 #: inlined, expressions of whole arrays.
 _NOT_NEEDED = (
@@ -36,58 +51,85 @@ _NOT_NEEDED = (
 
 
 @contextmanager
-def _memoized_types(typing, target):
-    """Make numba remember, within a ``with`` block, results that it otherwise computes again for
-    each statement.
+def _shorter_front_end(typing, target):
+    """Make numba type and lower kernels with less work within a ``with`` block, with the same
+    result.
 
-    These are the types of operations on numbers and of fields, the sizes of LLVM's types, for each
-    of which LLVM parses a module, and whether numba's own functions that lower a statement take its
-    location.
+    Remembered are the types of operations on numbers and of fields, the sizes of LLVM's types, for
+    each of which LLVM parses a module, and whether numba's own functions that lower a statement
+    take its location: numba finds them again for each statement.  Left out are the place in the
+    source that numba adds to its errors (after an error numba's own compiler compiles the function
+    again, see :class:`EntryPipeline`) and the timers that numba starts for each function.
 
-    typing, target : numba's typing context and target context.  Methods of both are replaced within
-        the block and restored when it ends, also by an exception.
-    Yields None.  Within another block of this kind, where a kernel is compiled for another one,
-    nothing is replaced.
+    typing, target : numba's typing context and target context.
+    Yields None.  All replaced functions are restored when the block ends, also by an exception.
+    Within another block of this kind, where a kernel is compiled for another one, nothing is
+    replaced.
     """
-    if "resolve_function_type" in vars(typing):  # a kernel that is compiled for another one
+    if "resolve_getattr" in vars(typing):  # a kernel that is compiled for another one
         yield
         return
-    resolved: dict[Any, Any] = {}
-    plain = typing.resolve_function_type
+    found: dict[Any, Any] = {}
+    plain = types.Function.get_call_type
 
-    def resolve_function_type(function, args, kws):
-        """Return numba's signature of a call; a call of the same function with the same types is
-        resolved once.
+    def get_call_type(function, context, args, kws):
+        """Return numba's signature of a call; a call of the same function with numbers of the same
+        types is resolved once.
 
-        function : numba's type of the function, or the operator of Python, that is called.
-        args : tuple of numba's types of the positional arguments.  Literals among them count as
-            their types, unless all arguments are literals.
-        kws : dict of numba's types of the named arguments.
-        Returns what numba's own method returns.  That method is called each time, and nothing is
-        remembered, if an argument is named or is not a float, an integer or a boolean.
+        function : numba's type of the function or operator that is called.
+        context : numba's typing context.
+        args, kws : tuple and dict of numba's types of positional and named arguments.
         """
-        if kws or not all(
-            isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args
-        ):
-            return plain(function, args, kws)
-        # numba resolves again for every literal integer
-        if not all(isinstance(kind, types.Literal) for kind in args):
-            args = tuple(map(types.unliteral, args))
-        if (function, args) not in resolved:
-            resolved[function, args] = plain(function, args, kws)
-        return resolved[function, args]
+        if kws or not _OF_NUMBERS.issuperset(map(type, args)):
+            return plain(function, context, args, kws)
+        if (function, args) not in found:
+            found[function, args] = plain(function, context, args, kws)
+        return found[function, args]
 
-    typing.resolve_function_type = resolve_function_type
-    typing.resolve_getattr = lru_cache(maxsize=None)(typing.resolve_getattr)
-    target.get_abi_sizeof = lru_cache(maxsize=None)(target.get_abi_sizeof)
-    has_location = base._has_loc
-    base._has_loc = lru_cache(maxsize=None)(base._has_loc)
-    try:
+    def without_context(*text, **named):
+        return nullcontext()
+
+    once = lru_cache(maxsize=None)
+    with ExitStack() as replaced:
+        for owner, name, function in (
+            (types.Function, "get_call_type", get_call_type),
+            (typing, "resolve_getattr", once(typing.resolve_getattr)),
+            (target, "get_abi_sizeof", once(target.get_abi_sizeof)),
+            (base, "_has_loc", once(base._has_loc)),
+            (ir.Inst, "_rec_list_vars", _variables_in),
+            (lowering, "new_error_context", without_context),
+            (typeinfer, "new_error_context", without_context),
+            (event, "install_timer", without_context),
+        ):
+            replaced.enter_context(mock.patch.object(owner, name, function))
         yield
-    finally:
-        # the attributes of the instances: the methods of their classes show again
-        del typing.resolve_function_type, typing.resolve_getattr, target.get_abi_sizeof
-        base._has_loc = has_location
+
+
+def _variables_in(statement, value):
+    """Return the variables of numba in a value of a statement, in numba's own order.
+
+    numba's own function asks of every value, most of which are names and places in the source,
+    whether it is of any of six classes.
+
+    statement : numba's statement; not used.
+    value : a variable, an instruction, a list, tuple or dict of values, or something else, which
+        contains no variable.
+    """
+    kind = type(value)
+    if kind is dict:
+        value = value.values()
+    elif kind is not list and kind is not tuple:
+        if isinstance(value, ir.Inst):
+            return value.list_vars()
+        value = (value,)
+    found = []
+    for part in value:
+        kind = type(part)
+        if kind is ir.Var:
+            found.append(part)
+        elif isinstance(part, _WITH_VARIABLES):
+            found.extend(_variables_in(statement, part))
+    return found
 
 
 @contextmanager
@@ -139,7 +181,7 @@ class EntryPipeline:
         if not _deferring:
             return Compiler(*self._context).compile_extra(function)
         try:
-            with _memoized_types(*self._context[:2]):
+            with _shorter_front_end(*self._context[:2]):
                 return _pipelines()[1](*self._context).compile_extra(function)
         except Exception as error:
             reason = error  # ``error`` ends with the except clause
@@ -339,7 +381,7 @@ def _pipeline(library_class: type):
     Returns a new subclass of numba's ``CompilerBase``.
     """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
-    from numba.core.compiler_machinery import register_pass
+    from numba.core.compiler_machinery import PassManager, register_pass
     from numba.core.typed_passes import NativeLowering
 
     @register_pass(mutates_CFG=True, analysis_only=False)
@@ -376,6 +418,23 @@ def _pipeline(library_class: type):
             """Return the flags that are set, for the events of numba, to which nobody listens."""
             return self._values
 
+    class Passes(PassManager):
+        """numba's list of passes, without its search for faults of each pass, its times and its
+        events.
+        """
+
+        def _runPass(self, index, step, state):
+            """Run one pass.
+
+            index : place of the pass in the list; not used.
+            step : the pass.
+            state : numba's state of the compilation, which the pass changes.
+            """
+            step.analysis = self._analysis
+            step.run_initialization(state)
+            step.run_pass(state)
+            step.run_finalizer(state)
+
     class Compiler(CompilerBase):
         """numba's default compiler in nopython mode, with :class:`ShortFlags`, without the passes
         of :data:`_NOT_NEEDED`.
@@ -392,10 +451,11 @@ def _pipeline(library_class: type):
             passes.
             """
             # passes are named by their classes; ``why`` is numba's description of each
-            passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-            steps = [(step, why) for step, why in passes.passes if step.__name__ not in _NOT_NEEDED]
+            passes = Passes("nopython")
             passes.passes = [
-                (Lowering if step is NativeLowering else step, why) for step, why in steps
+                (Lowering if step is NativeLowering else step, why)
+                for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes
+                if step.__name__ not in _NOT_NEEDED
             ]
             passes.finalize()
             return [passes]
