@@ -104,7 +104,7 @@ BOTH_KINDS = {
     "needs the scene's gamma": {"roller": PAPER.replace(gamma=None), "unsteady": True},
     "rested = -1.0: must be finite and >= 0": UNSTEADY | {"rested": -1.0},
     "one time >= 0, or True": UNSTEADY | {"rested": [1.0, 2.0]},
-    "it starts in full slip": UNSTEADY | {"omega0": 0.0, "rested": True},
+    "the cylinder starts in full slip": UNSTEADY | {"omega0": 0.0, "rested": True},
     "a speed is prescribed": UNSTEADY | {"omega0": None, "omega": 30.0, "rested": True},
 }
 MOTIONS = [*each(vr.roll, BOTH_KINDS, **ROLL), *each(vr.ensemble, BOTH_KINDS, **ROLL)]
@@ -191,6 +191,7 @@ SAMPLES = each(
     {
         "give seed or rng": {"seed": None},
         "design: 'grid' is not a design; choose from random, latin, sobol": {"design": "grid"},
+        "rng = -1: must be a Generator of numpy": {"seed": None, "rng": -1},
     },
     n=4,
     seed=0,
@@ -231,6 +232,10 @@ OTHERS = each(
         "quantiles = 0.5: must be a list of numbers": lambda: vr.ensemble(**FREE).summary(
             quantiles=0.5
         ),
+        "run = 'run.toml' (a text): must be a Run, as runs.read_run(path) returns it": [
+            lambda: vr.runs.run_ensemble("run.toml", "s.zarr"),
+            lambda: vr.runs.estimate("run.toml"),
+        ],
     },
 )
 

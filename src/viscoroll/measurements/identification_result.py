@@ -19,6 +19,7 @@ from ..core import (
     check_names,
     check_number,
     describe_value,
+    described_error,
 )
 from ..core.plots.result_figures import identification
 from .identification_report import as_dataset, report
@@ -332,11 +333,8 @@ class Identification(Result):
             )
         for name, (_, span) in record.initial_values(self.cylinder.R).items():
             if span is not None:
-                raise ParameterError(
-                    name,
-                    None,
-                    "a number",
-                    f"{name} of the record is not given: a prediction needs it, give {name}=",
+                raise described_error(
+                    f"{name} of the record", "is not given", "given for a prediction"
                 )
         return self._predict(
             record,

@@ -216,8 +216,9 @@ def understand(
     for what is no table.
     """
     if not isinstance(columns, Mapping | None):
-        allowed = "a dict from quantity to heading, as {'frequency': 'f [Hz]'}"
-        raise ParameterError("columns", describe_value(columns), allowed)
+        raise ParameterError(
+            "columns", describe_value(columns), "a dict, as {'frequency': 'f [Hz]'}"
+        )
     named = dict(columns or {})
     known = QUANTITIES[test]
     bare = BARE[test]
@@ -261,12 +262,10 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     by_name = isinstance(units, Mapping)
     known = QUANTITIES[test]
     first = BARE[test][0]
-    two = (
-        "(time, moduli), as ('s', 'MPa')"
-        if first == "time"
-        else "(frequency, moduli), as ('Hz', 'MPa')"
+    allowed = (
+        f"({first.split()[-1]}, moduli), as ({UNITS[first]!r}, 'MPa'), or a dict, as "
+        f"{{{first!r}: {UNITS[first]!r}}}"
     )
-    allowed = f"{two}, or a dict from quantity to unit, as {{{first!r}: {UNITS[first]!r}}}"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
         raise ParameterError("units", describe_value(units), allowed)
     # each of the two is for all quantities that are converted to the same unit

@@ -193,15 +193,13 @@ def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
     does not ascend.
     """
     bounds = Unknown.bounds(name)
-    if (
-        argument == "prior"
-    ):  # value and standard deviation may have different units, so that none is taken
+    if argument == "prior":  # its two numbers may have different units, so that none is taken
         del bounds["unit"]
     pair = check_array(f"{argument} {name}", numbers, **bounds)
     if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):
-        allowed = {"unknown": "(low, high), low < high", "prior": "(value, standard deviation)"}[
-            argument
-        ]
+        allowed = (
+            "(low, high), low < high" if argument == "unknown" else "(value, standard deviation)"
+        )
         raise ParameterError(f"{argument} {name}", describe_value(numbers), allowed)
     return pair.tolist()
 

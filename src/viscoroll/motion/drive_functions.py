@@ -330,7 +330,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
         differ = np.abs(given - start) > _START * scale
         if differ.any():
             text = f"{name}0 = {{}}: must be None, or {{}}, the prescribed {name} at t = 0"
-            numbers = (np.broadcast_to(each, differ.shape)[differ][0] for each in (given, start))
+            numbers = np.stack(np.broadcast_arrays(given, start))[:, differ][:, 0]
             raise dimensionless_error(f"{name}0", text, name, *numbers)
     if start.size > 1:
         return start

@@ -531,14 +531,12 @@ class _Reader:
             )
         except (OSError, ValueError, KeyError, FileError) as error:
             problem = (
-                error.problem
-                if isinstance(error, FileError)
-                else "the file does not exist"
+                "the file does not exist"
                 if not path.exists()
                 else f"the file has no {column!r}"
                 if isinstance(error, KeyError)
-                else error
-                if type(error) in (ValueError, ParameterError)
+                else getattr(error, "problem", error)
+                if type(error) in (FileError, ParameterError, ValueError)
                 else f"the file is damaged, or no {path.suffix} file"
             )
             raise self.fault(number, f"{where}: {problem}") from error
