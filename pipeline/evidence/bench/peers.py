@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.law.contact_kernel import signed_creep, signed_traction, stick_argument
 from viscoroll.kernels.law.law_functions import length_and_moment, locate_row, moment_factor
 from viscoroll.kernels.law.law_record import Law, State
+from viscoroll.kernels.law.traction_functions import signed_creep, signed_traction, stick_argument
 from viscoroll.kernels.numerics.intrinsics import floats_at, integers_at
 from viscoroll.laws.law_table import law_table
 

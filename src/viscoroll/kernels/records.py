@@ -10,8 +10,6 @@ omega, Eq. (22) of the paper.  ``omega_or_d`` is the second unknown: omega in fu
 delta/delta_star in partial slip.
 """
 
-from __future__ import annotations
-
 from typing import Any, Generic, NamedTuple, TypeVar
 
 # --- Records of the solver of motions ---

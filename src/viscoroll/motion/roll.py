@@ -404,7 +404,8 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     t = np.minimum(times / scale["t"], end)
     if t[-1] != end:
         t = np.append(t, end)
-    noted = np.full((_SWITCHES_KEPT, 2), np.nan)
+    noted = np.empty((_SWITCHES_KEPT, 2))
+    noted.fill(np.nan)
     out, (status, steps, _, onset_time, rest_time) = integrate_single(
         problem, t, noted, NO_NOTES[1]
     )

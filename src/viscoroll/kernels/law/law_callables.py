@@ -30,7 +30,10 @@ from numpy.typing import NDArray
 from ..numerics.intrinsics import floats_at, function_address, integers_at, record_at, record_type
 from ..numerics.jit import inline_kernel, kernel
 from ..records import LoadsAndSlopes
-from .contact_kernel import (
+from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE, asymmetry_at, pairs_at
+from .law_functions import body_moments, length_and_moment, locate_row, moment_factor
+from .law_record import PARTS_PER_ROW, ROW_SIZE, Law, State
+from .traction_functions import (
     Q_slopes,
     moment_slope,
     moment_slope_over_V,
@@ -39,9 +42,6 @@ from .contact_kernel import (
     stick_argument,
     traction_on_moments,
 )
-from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE, asymmetry_at, pairs_at
-from .law_functions import body_moments, length_and_moment, locate_row, moment_factor
-from .law_record import PARTS_PER_ROW, ROW_SIZE, Law, State
 
 # --- The law of one scene as a C function ---
 

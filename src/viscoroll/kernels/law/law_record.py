@@ -130,6 +130,15 @@ def write_field(row, value, n, request):
 
 
 @inline_kernel
+def asks_for_moments(to):
+    """Return whether M, or the moment of a body, is requested, a bool.
+
+    to : :class:`Fields` of a :class:`Request`, -1 where a quantity is not requested.
+    """
+    return max(to.M, to.M_half_space, to.M_cylinder) >= 0
+
+
+@inline_kernel
 def asks_for_slopes(to):
     """Return whether slopes are requested: of Q, of M, and of the moment of a body, three bools.
 

@@ -30,7 +30,7 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -61,11 +61,11 @@ from .collocation import (
     set_step_length,
 )
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
-from .motion_law import free_decay, low_speed_feedback, rest_limits
+from .motion_law import added_inertia, evaluate_moments, reaction_at_rest, rest_limits
 from .output import accept_step, record_switch, write_column, write_quadrature
 from .rhs import current_rates
 from .step_control import moderate_speed
-from .table_law import sticks_at_rest
+from .table_law import SlowLaw, slow_law_of_table, sticks_at_rest
 
 #: A motion has reached an equilibrium at this relative distance of V divided by rtol: the distance
 #: adds nothing that counts to the errors of the steps before.
@@ -84,16 +84,6 @@ _COASTING_D = 1e-2
 
 
 @inline_kernel
-def equilibrium_tolerance(rtol):
-    """Return the relative distance of V from its equilibrium at which V has reached it: max(0.001
-    rtol, 1e-14).
-
-    rtol: float, relative tolerance of the motion, dimensionless, > 0.
-    """
-    return max(_NEAR_EQUILIBRIUM * rtol, _NEAR_ROUNDING)
-
-
-@inline_kernel
 def may_be_at_equilibrium(noise, work):
     """Return whether p at node 0 may be near its equilibrium, a bool: a check that costs no
     evaluation of the law.
@@ -109,7 +99,7 @@ def may_be_at_equilibrium(noise, work):
     Returns True also at equality, False if one of these is NaN.
     """
     nodes = work.nodes
-    tolerance = equilibrium_tolerance(work.options.rtol)
+    tolerance = max(_NEAR_EQUILIBRIUM * work.options.rtol, _NEAR_ROUNDING)
     # |p'|/|dp'/dp| <= 2 tolerance |p|, multiplied by -dp'/dp, which is above 0 where it is stable
     return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[
         ROW_P_DIAGONAL
@@ -117,43 +107,15 @@ def may_be_at_equilibrium(noise, work):
 
 
 @kernel
-def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
-    """Return the equilibrium of V in full slip and whether V has reached it, by one Newton step.
-
-    V has no equilibrium here where omega approaches V, or 0 under a brake, where feedback of omega
-    acts on either speed, or where V' does not decrease with V.
-
-    state: State, the present one, in full slip.
-    rates: Rates, at that state; p_rate, weighted_rate, dp_rate_dV, dp_rate_dd and drate_dd are
-    read.
-    regime: Regime, of full slip; ``sigma`` and ``spin_sign`` are read.
-    noise: float, rounding error of p', dimensionless.
-    tolerance: float, relative distance of V at which it has reached its equilibrium.
-    Returns (reached, State): whether the Newton step is at most ``tolerance`` times V plus the part
-    of it that ``noise`` explains; the State after the step, reached or not, with omega unchanged.
-    (False, state) where V has no equilibrium.
-    """
-    # Feedback of omega on V' or on omega', or a V' that does not decrease with V (or is NaN).
-    if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
-        return False, state
-    # omega approaches V, or 0 under a brake: the regime will end.
-    if regime.sigma * rates.weighted_rate < 0.0 or regime.spin_sign * rates.weighted_rate < 0.0:
-        return False, state
-    V_off = rates.p_rate / rates.dp_rate_dV  # distance of V from its equilibrium; p is V here
-    # -noise/(dp'/dV) is above 0: the distance that an error ``noise`` of p' explains
-    return abs(V_off) <= tolerance * state.V - noise / rates.dp_rate_dV, State(
-        state.V - V_off, state.omega_or_d
-    )
-
-
-@kernel
 def find_equilibrium(state, regime, noise, step_state, work):
     """Return the stable equilibrium under the present drive and whether the motion has reached it.
 
-    The motion has reached it if the Newton step to it is at most the tolerance, of V relative to
-    itself and of d in absolute terms, plus the step that ``noise`` explains.  In full slip the
-    equilibrium is that of V alone (:func:`_equilibrium_full_slip`).  The Jacobian of the present
-    state decides whether the equilibrium is stable.
+    The motion has reached it if the Newton step to it is at most the tolerance, max(0.001 rtol,
+    1e-14), of V relative to itself and of d in absolute terms, plus the step that ``noise``
+    explains.  The Jacobian of the present state decides whether the equilibrium is stable.  In full
+    slip the equilibrium is that of V alone, and omega is unchanged; there V has none where omega
+    approaches V, or 0 under a brake, where feedback of omega acts on either speed, or where V' does
+    not decrease with V.
 
     state: State, the present one, with V > 0 in partial slip.
     regime: Regime, at that state; all fields are read.
@@ -168,9 +130,18 @@ def find_equilibrium(state, regime, noise, step_state, work):
     load = current_load(regime, step_state, work)
     rates = current_rates(state, regime, step_state, work)
     V = state.V
-    tolerance = equilibrium_tolerance(work.options.rtol)
+    tolerance = max(_NEAR_EQUILIBRIUM * work.options.rtol, _NEAR_ROUNDING)
     if regime.full_slip:
-        return _equilibrium_full_slip(state, rates, regime, noise, tolerance)
+        # Feedback of omega on V' or on omega', or a V' that does not decrease with V (or is NaN).
+        if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
+            return False, state
+        # omega approaches V, or 0 under a brake: the regime will end.
+        if regime.sigma * rates.weighted_rate < 0.0 or regime.spin_sign * rates.weighted_rate < 0.0:
+            return False, state
+        V_off = rates.p_rate / rates.dp_rate_dV  # distance of V from its equilibrium; p is V here
+        # -noise/(dp'/dV) is above 0: the distance that an error ``noise`` of p' explains
+        steady = abs(V_off) <= tolerance * V - noise / rates.dp_rate_dV
+        return steady, State(V - V_off, state.omega_or_d)
     # Where one speed is prescribed, p' does not depend on the other.
     if load.inverse_mass == 0.0 or load.inverse_inertia == 0.0:
         return False, state
@@ -251,6 +222,81 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     )
 
 
+class FreeDecay(NamedTuple):
+    """Exponential decay of V in slow free rolling, V' = -rate V, dimensionless.
+
+    rate : its rate per unit of tau, below 0 where the feedback drives.
+    creep : creepage less delta_0, divided by V.
+    delta_0 : creepage without creep force in the limit V -> 0, so that omega = V (1 + delta_0).
+    force, torque : those of the feedback divided by V, positive where they drive; 0 without one.
+    """
+
+    rate: float
+    creep: float
+    delta_0: float
+    force: float
+    torque: float
+
+
+@kernel
+def free_decay(work):
+    """Return the decay of V where nothing but resistance and feedback acts, as :class:`FreeDecay`,
+    in the limit V -> 0.
+
+    With a_b and a_c, the factors of Q by which shear acts back on M
+    (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage without creep force,
+    V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c) Q - M_cylinder, with
+    moments without traction and feedback f and q in proportion to V.  Q is eliminated: with a = 1 +
+    a_b, b = 1 - a_c and J = j (1 + delta_0)
+
+        (b + a J) V' = -b (M_half_space - f) - a (M_cylinder - q)
+        (b + a J) Q = J (M_half_space - f) - M_cylinder + q
+
+    Added mass of half-spaces, half of n V' in either moment, adds n to the factor of V', and n/2 to
+    J and to the factor 1 of M_cylinder - q in the second line.  A law by a table has slopes over d
+    on each side of d = 0; those of the side on which d lies are taken.
+
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
+    """
+    scene = work.scene
+    functions = evaluate_moments(0.0, scene)
+    reaction = reaction_at_rest(scene)
+    L, delta_0 = rest_limits(scene)
+    # Q_V = 0, as on rows Q is 0 at d = 0; creep_V = 0, as the change of delta_0 with V is left out
+    rows = SlowLaw(
+        half_space=functions.half_space,
+        cylinder=functions.cylinder,
+        reaction_half_space=reaction.half_space,
+        reaction_cylinder=reaction.cylinder,
+        creep_V=0.0,
+        creep_Q=L / (4.0 * scene.kappa),  # Q = 2 mu d for small d
+        Q_V=0.0,
+    )
+    gains = work.drive.gains
+    omega_over_V = 1.0 + delta_0
+    force = gains.force_V + gains.force_omega * omega_over_V
+    torque = gains.torque_V + gains.torque_omega * omega_over_V
+    spin_inertia = scene.j * omega_over_V
+    n = added_inertia(0.0, scene)[0]  # 0 of covers
+    for sigma in (1.0, -1.0):
+        slow = slow_law_of_table(sigma, scene.kappa, scene.mu, rows, by_value(scene.law).table)
+        on_axis = 1.0 + slow.reaction_half_space
+        on_spin = 1.0 - slow.reaction_cylinder
+        inertia = on_spin + spin_inertia * on_axis + n
+        if on_axis == 1.0 and on_spin == 1.0:  # half-spaces: the same sum, in another order
+            rate = (slow.half_space + slow.cylinder - force - torque) / inertia
+        else:
+            axis_loss = on_spin * (slow.half_space - force)
+            rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
+        Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
+        Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
+        # Q_V is Q/V at d = 0, so that Q above it means d > 0; at equality both sides serve
+        if sigma * (Q - slow.Q_V) >= 0.0:
+            break
+    creep = slow.creep_V + slow.creep_Q * Q
+    return FreeDecay(rate=rate, creep=creep, delta_0=delta_0, force=force, torque=torque)
+
+
 @inline_kernel
 def is_coasting(state, regime, step_state, work):
     """Return whether V decays exponentially from here on, to a fraction of the tolerance; a bool.
@@ -281,36 +327,13 @@ def is_coasting(state, regime, step_state, work):
 
 
 @kernel
-def _energies_of_decay(decay, work):
-    """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the
-    start.
-
-    The loss in slip is of higher order and counts as 0: the loss in rolling is the kinetic energy
-    plus the works of the feedback.
-
-    decay: :class:`.motion_law.FreeDecay`, of which the rate, above 0, is read.
-    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
-    Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the
-    brake), floats, dimensionless, in the order of quadratures 2 ... 6 of :func:`write_quadrature`;
-    works of a feedback that brakes are negative; the last is 0, as no brake acts.
-    """
-    force, torque = low_speed_feedback(work)
-    omega_over_V = 1.0 + rest_limits(work.scene)[1]
-    # The integral of V^2 over tau is V_0^2/(2 rate): a power of c V^2 takes c/rate times V_0^2/2.
-    force_work = force / decay.rate
-    torque_work = torque / decay.rate * omega_over_V
-    kinetic = 1.0 + work.scene.j * omega_over_V * omega_over_V
-    return 0.0, kinetic + force_work + torque_work, force_work, torque_work, 0.0
-
-
-@kernel
 def coast_to_end(state, regime, step_state, work):
     """Write the remaining outputs by the closed form of slow rolling, V' = -rate V with delta -
     delta_0 proportional to V.
 
     Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the
     feedback, in the limit V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass;
-    :func:`.motion_law.free_decay` has it for covers too.  delta_0 is the creepage without creep
+    :func:`free_decay` has it for covers too.  delta_0 is the creepage without creep
     force for V -> 0, 0 for half-spaces.
 
     With a rest threshold the motion ends when the larger speed has fallen to it; an output at that
@@ -330,11 +353,11 @@ def coast_to_end(state, regime, step_state, work):
     """
     scene = work.scene
     direction = regime.direction
-    force, torque = low_speed_feedback(work)
-    delta_0 = rest_limits(scene)[1]
-    omega_over_V = 1.0 + delta_0
     free = free_decay(work)
     rate = free.rate
+    force = free.force
+    torque = free.torque
+    omega_over_V = 1.0 + free.delta_0
     creep = state.V * free.creep  # delta - delta_0
     largest_speed = max(state.V, abs(state.V * (omega_over_V + creep)))
     tau = work.output_tau
@@ -343,7 +366,14 @@ def coast_to_end(state, regime, step_state, work):
     if rest_speed > 0.0:
         # exp(-rate time) is the ratio of the speeds; now, where the speed is below already
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
-    energies = _energies_of_decay(free, work)
+    # Quadratures 2 ... 6 of the whole decay, divided by V^2/2 at the start.  The integral of V^2
+    # over tau is V^2/(2 rate): a power of c V^2 takes c/rate times V^2/2.  The loss in slip is of
+    # higher order and counts as 0: the loss in rolling is the kinetic energy plus the works of the
+    # feedback, negative where it brakes.
+    force_work = force / rate
+    torque_work = torque / rate * omega_over_V
+    kinetic = 1.0 + scene.j * omega_over_V * omega_over_V
+    energies = (0.0, kinetic + force_work + torque_work, force_work, torque_work, 0.0)
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
         # exp(-rate time) - 1 without cancellation for short times; ``decay`` is the exponential,
@@ -358,7 +388,7 @@ def coast_to_end(state, regime, step_state, work):
         speeds = (
             direction * V,
             direction * (V * (omega_over_V + delta)),
-            delta + delta_0 if moves else 0.0,
+            delta + free.delta_0 if moves else 0.0,
         )
         code = PARTIAL_SLIP if moves else AT_REST
         write_column(column, speeds, code, (force * direction * V, torque * direction * V), work)

@@ -23,8 +23,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   full slip (:mod:`rhs`).  p' is its slope in tau.
 """
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 import numpy as np
@@ -92,8 +90,8 @@ _INTEGRALS = np.vstack(
     [np.zeros(ROW_LENGTH), _ALL.powers() / np.arange(1.0, ROW_LENGTH + 1.0)[:, None]]
 )
 #: The matrix takes values at all nodes, less that at node 0, to the coefficients of
-#: :func:`evaluate_integral`.
-_INTEGRAL_MATRIX = _column_major(
+#: :func:`.output._quadrature_at`.
+INTEGRAL_MATRIX = _column_major(
     np.vstack([_divide_by_linear(_divide_by_linear(_INTEGRALS)), np.zeros(ROW_LENGTH)])
 )
 #: Identity matrix, column by column.
@@ -248,27 +246,6 @@ def fit_dense_output(row, target, nodes):
     multiply_matrix(_DENSE_MATRIX, row, nodes[row], nodes, target, nodes)
 
 
-@kernel
-def fit_integral(row, target, nodes):
-    """Store the coefficients of the integral of the interpolant of a row.
-
-    With t in [-1, 1] on the step and v = 1 + t the integral over t from the left end is
-
-        v (nodes[row] + v (c_0 + c_1 t + ... + c_(N-1) t^(N-1)))
-
-    It is over t, so that half the length of the step is still to be multiplied.  The value
-    nodes[row] at the left end is not among the coefficients: :func:`evaluate_integral` takes it as
-    an argument.
-
-    row: int, index in ``nodes`` of the value at node 0 of the row; the values at all nodes are
-    read.
-    target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in
-    the unit of the row, and a 0.
-    nodes: Workspace.nodes.  Returns nothing.
-    """
-    multiply_matrix(_INTEGRAL_MATRIX, row, nodes[row], nodes, target, nodes)
-
-
 @inline_kernel
 def evaluate_dense_output(v, nodes, row):
     """Return the interpolant of a row at a position, less its value at the left end; a float in the
@@ -289,23 +266,6 @@ def evaluate_dense_output(v, nodes, row):
     for k in range(ROW_LENGTH - 1, -1, -1):
         value = fma(t, value, nodes[row + k])
     return v * value
-
-
-@inline_kernel
-def evaluate_integral(v, first, nodes, row):
-    """Return the integral of the interpolant of a row from the left end to a position; a float in
-    the unit of the row.
-
-    It is over t in [-1, 1]: times half the length of the step it is the integral over tau.  It is
-    accurate relative to itself as v -> 0.
-
-    v: float, position in [0, 2] on the step.
-    first: float, value of the row at the left end, which is not among the coefficients.
-    nodes: Workspace.nodes.
-    row: int, index in ``nodes`` of the first of the ROW_LENGTH coefficients of
-    :func:`fit_integral`.
-    """
-    return v * (first + evaluate_dense_output(v, nodes, row))
 
 
 @kernel

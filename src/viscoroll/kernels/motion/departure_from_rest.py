@@ -31,19 +31,18 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..law.cover_law import reduced_creep
 from ..numerics.intrinsics import by_value
 from ..numerics.jit import inline_kernel, kernel
 from ..records import REGIME_AT_REST, Load, Regime
+from .collocation import change_slip
 from .drive import evaluate_load, has_brake, is_constant, segment_end
 from .motion_law import (
     added_inertia,
-    asymmetry_at_rest,
-    creep_at_rest,
+    asymmetry_at_speed,
+    creep_over_L,
     pull_at_rest,
     reaction_at_rest,
     rest_limits,
@@ -96,7 +95,7 @@ def _residual_of_d(d, load, scene):
     omega_rate = load.inverse_inertia * (load.torque - spin) + load.prescribed_omega_rate
     L, delta_0 = rest_limits(scene, np.copysign(1.0, d))
     inverse_k = 2.0 * scene.kappa / scene.mu / L  # 1/(k L) of rhs
-    creep = creep_at_rest(d, scene)
+    creep = creep_over_L(0.0, d, scene)
     d_total = creep.value + delta_0 * inverse_k  # right side of the equation, divided by L V'
     # Derivative of the residual in d: of the term with omega' - V', then of that with d_total V'.
     slope = -(load.inverse_inertia * spin_dd + load.inverse_mass * axis_dd) * inverse_k
@@ -117,9 +116,7 @@ def _d_at_zero_omega(scene):
     L, delta_0 = rest_limits(scene, -1.0)  # on the side d < 0
     # (delta - delta_0)/delta_star at delta = -1, with delta_star = mu L/(2 kappa)
     creep = -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
-    if by_value(scene.law).cover_rows is None:
-        return creep
-    return reduced_creep(creep, asymmetry_at_rest(scene))
+    return reduced_creep(creep, asymmetry_at_speed(0.0, scene))
 
 
 @kernel
@@ -137,7 +134,7 @@ def _spin_against_brake(load, scene):
     Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at
     most -1, as omega then grows with V, else that of the torque that is left, 0.0 for none; held, a
     bool, whether the brake holds omega at 0 (also where both torques are equal), in which case the
-    sign is to be ignored.
+    sign is 0.0.
     """
     d_zero = _d_at_zero_omega(scene)
     load = _effective_load(load, 0.0, scene)  # without the brake, whose torque is compared below
@@ -145,7 +142,8 @@ def _spin_against_brake(load, scene):
         return 1.0, False
     # torque that is left at omega = 0: that of the motor less what the traction there takes
     torque = load.torque - pull_at_rest(d_zero, scene)[1]
-    return np.sign(torque), abs(torque) <= load.brake
+    locked = abs(torque) <= load.brake
+    return 0.0 if locked else np.sign(torque), locked
 
 
 @kernel
@@ -268,53 +266,21 @@ def solve_d_at_departure(load, spin_sign, scene):
 
 
 @inline_kernel
-def _traction_at_rest(force, scene):
-    """Return the traction that balances a force on the axis at rest, |Q|, and the torque on the
-    cylinder that it makes.
+def _traction_at_rest(load, factor, excess):
+    """Return |Q| of a traction that balances a load at rest, a float, dimensionless.
 
-    Of half-spaces both are |force|.  Of a cover |Q| (1 + a_b + e_b |Q|/mu) = |force| and the torque
-    is |Q| (1 - a_c - e_c |Q|/mu), with the factors a and excesses e of the base and the cylinder
-    (:class:`.cover_law.Reaction`).
+    It is the root of Q (factor + excess Q) = load that is load/factor for a small excess; exactly
+    ``load`` for the factor 1 and the excess 0 of half-spaces.  Where no Q balances the load the
+    square root counts as 0: Q is then at least that of the largest load that is balanced.
 
-    force: float, the force, dimensionless, of either sign.
-    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
-    Returns (|Q|, modulus of the torque), floats, dimensionless.
+    load: float, modulus of the force or torque, dimensionless.
+    factor, excess: floats, of which the part of Q that acts on the load is made.
     """
-    if by_value(scene.law).cover_rows is None:
-        return abs(force), abs(force)
-    reaction = reaction_at_rest(scene)
-    factor = 1.0 + reaction.half_space
-    excess = reaction.half_space_excess / scene.mu
-    # The root of Q (factor + excess Q) = |force| that is |force|/factor for a small excess.  Where
-    # no Q balances the force the square root counts as 0: Q is then at least that of the largest
-    # force that is balanced.
-    Q = 2.0 * abs(force) / (factor + np.sqrt(max(factor * factor + 4.0 * excess * abs(force), 0.0)))
-    return Q, Q * (1.0 - (reaction.cylinder + reaction.cylinder_excess * Q / scene.mu))
-
-
-@inline_kernel
-def _traction_of_torque_at_rest(torque, scene):
-    """Return |Q| that balances a torque on the cylinder at rest, a float, dimensionless; of
-    half-spaces |torque|.
-
-    torque: float, the torque that the traction has to balance, dimensionless, of either sign.
-    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
-    """
-    if by_value(scene.law).cover_rows is None:
-        return abs(torque)
-    reaction = reaction_at_rest(scene)
-    factor = 1.0 - reaction.cylinder
-    excess = -reaction.cylinder_excess / scene.mu
-    # The root of Q (factor + excess Q) = |torque|, as in :func:`_traction_at_rest`.
-    return (
-        2.0
-        * abs(torque)
-        / (factor + np.sqrt(max(factor * factor + 4.0 * excess * abs(torque), 0.0)))
-    )
+    return 2.0 * load / (factor + np.sqrt(max(factor * factor + 4.0 * excess * load, 0.0)))
 
 
 @kernel
-def holding_margin(load, scene):
+def holding_margin(tau, segment, work):
     """Return the margin by which friction and brake hold the cylinder at V = omega = 0; below 0
     where it moves.
 
@@ -330,28 +296,36 @@ def holding_margin(load, scene):
     - omega prescribed to stay 0: mu - |force|.
 
     Of a cover the traction is that which balances the force with the moment that it makes,
-    M = -delta_0 Q and more (:func:`_traction_at_rest`), so that rest without a brake needs force +
-    (1 + delta_0) torque = 0 for a cover on the base.
+    M = -delta_0 Q and more, so that rest without a brake needs force + (1 + delta_0) torque = 0 for
+    a cover on the base: |Q| (1 + a_b + e_b |Q|/mu) = |force|, and the torque is |Q| (1 - a_c - e_c
+    |Q|/mu), with the factors a and excesses e of the base and the cylinder
+    (:class:`.cover_law.Reaction`), 0 of half-spaces.
 
-    load: Load, at V = omega = 0, where feedback vanishes; force, torque, brake, the prescribed
-    slopes and the inverse mass and inertia are read.  The brake must not hold omega (``locked``),
-    as inverse_inertia = 0 is taken for a prescribed omega.
-    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
+    tau: float, the time.
+    segment: int, index of the segment of the drive that contains the time.
+    work: Workspace, of the motion, whose Scene and Drive are read.
     Returns the margin as a force or torque, a float, dimensionless, at most mu + brake; 0 holds.
     It is -1.0 where a prescribed speed has a slope other than 0.
     """
-    mu = scene.mu
+    scene = work.scene
+    # direction 1, and no brake that holds omega, as inverse_inertia = 0 stands for a prescribed one
+    load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
         return -1.0
-    mu *= 1.0 + _HOLDING_ROUNDING
+    mu = scene.mu * (1.0 + _HOLDING_ROUNDING)
     brake = load.brake * (1.0 + _HOLDING_ROUNDING)
+    reaction = reaction_at_rest(scene)
     if load.inverse_mass == 0.0:  # V is prescribed to stay 0
         if by_value(scene.law).cover_rows is None:
             return mu + brake - abs(load.torque)
-        return mu - _traction_of_torque_at_rest(max(abs(load.torque) - brake, 0.0), scene)
-    Q, torque = _traction_at_rest(load.force, scene)
+        torque = max(abs(load.torque) - brake, 0.0)
+        excess = -reaction.cylinder_excess / scene.mu
+        return mu - _traction_at_rest(torque, 1.0 - reaction.cylinder, excess)
+    excess = reaction.half_space_excess / scene.mu
+    Q = _traction_at_rest(abs(load.force), 1.0 + reaction.half_space, excess)
     if load.inverse_inertia == 0.0:  # omega is prescribed to stay 0
         return mu - Q
+    torque = Q * (1.0 - (reaction.cylinder + reaction.cylinder_excess * Q / scene.mu))
     # Modulus of the torque that is left for the brake.
     rest = abs(np.copysign(torque, load.force) + load.torque)
     # Of half-spaces loads in balance cancel to exactly 0; of a cover to rounding.
@@ -359,23 +333,6 @@ def holding_margin(load, scene):
     # A smaller ``rest`` counts as 0: without a brake the margin is then 0, which holds.
     margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE + noise else 0.0))
     return balance_of_table(load, scene.kappa, mu, margin, by_value(scene.law).table)
-
-
-@kernel
-def _holding_margin_at(tau, segment, work):
-    """Evaluate the drive at a time and return by how much friction and brake hold the cylinder at
-    rest against it.
-
-    :func:`holding_margin` takes a Load; the search for the time of departure needs the margin as a
-    function of time.
-
-    tau: float, the time.
-    segment: int, index of the segment of the drive that contains the time.
-    work: Workspace, of the motion, whose Scene and Drive are read.
-    Returns a force or torque, a float, dimensionless: at least 0 where the cylinder stays, below 0
-    where the drive moves it, -1.0 where a prescribed speed has a slope other than 0.
-    """
-    return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene)
 
 
 @kernel
@@ -396,16 +353,16 @@ def find_departure_time(tau, segment, work):
     """
     end = segment_end(segment, work)
     if is_constant(segment, work.drive):
-        return end if _holding_margin_at(tau, segment, work) >= 0.0 else tau
+        return end if holding_margin(tau, segment, work) >= 0.0 else tau
     low = tau
     # the cylinder stays at ``low`` and moves at ``high``; the bisection ends where no time is
     # between
     for n in range(1, _SCAN_INTERVALS + 1):
         high = tau + (end - tau) * n / _SCAN_INTERVALS
-        if _holding_margin_at(high, segment, work) < 0.0:
+        if holding_margin(high, segment, work) < 0.0:
             middle = 0.5 * (low + high)
             while low < middle < high:
-                if _holding_margin_at(middle, segment, work) < 0.0:
+                if holding_margin(middle, segment, work) < 0.0:
                     high = middle
                 else:
                     low = middle
@@ -436,12 +393,7 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     STAYS_AT_REST with REGIME_AT_REST if neither sign passes.  The third entry, 0.0, is omega.
     """
     scene = work.scene
-    load = evaluate_load(
-        tau,
-        segment,
-        Regime(full_slip=True, direction=1.0, sigma=1.0, spin_sign=0.0, locked=False),
-        work,
-    )
+    load = evaluate_load(tau, segment, REGIME_AT_REST, work)  # in direction 1
     for sigma in (1.0, -1.0):
         L, free_creep = rest_limits(scene, sigma)
         axis, spin, _, _ = pull_at_rest(sigma, scene)
@@ -456,7 +408,7 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
         if locked:
             omega_rate = 0.0
         # |d + c d^2| at d = sigma is 1 + sigma c, 1 of half-spaces
-        onset = stick_zone_slip * L * abs(creep_at_rest(sigma, scene).value)
+        onset = stick_zone_slip * L * abs(creep_over_L(0.0, sigma, scene).value)
         if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > onset * abs(V_rate):
             # signs so far are those of direction 1: mirrored where V falls below 0
             direction = 1.0 if V_rate >= 0.0 else -1.0
@@ -498,16 +450,17 @@ def depart_from_rest(tau, segment, work):
     """
     scene = work.scene
     tau_drive = tau
-    load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     # A drive that holds the cylinder, or is in balance with it to rounding, at ``tau``, where its
     # segment begins or the cylinder was found to depart: its change tells what follows.
-    rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
-    if holding_margin(load, scene) >= -rounding and not is_constant(segment, work.drive):
+    brake = evaluate_load(tau, segment, REGIME_AT_REST, work).brake
+    rounding = _HOLDING_ROUNDING * (scene.mu + brake)
+    margin = holding_margin(tau, segment, work)
+    if margin >= -rounding and not is_constant(segment, work.drive):
         # Whether the drive moves the cylinder is decided by its values a little later.
         tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
-        load = evaluate_load(tau_drive, segment, REGIME_AT_REST, work)
+        margin = holding_margin(tau_drive, segment, work)
     braked = has_brake(segment, work.drive)
-    if holding_margin(load, scene) >= 0.0:
+    if margin >= 0.0:
         return STAYS_AT_REST, REGIME_AT_REST, 0.0
     kind = STAYS_AT_REST
     departure = REGIME_AT_REST
@@ -517,16 +470,14 @@ def depart_from_rest(tau, segment, work):
             full_slip=False, direction=direction, sigma=1.0, spin_sign=0.0, locked=False
         )
         load = evaluate_load(tau_drive, segment, regime, work)
-        spin_sign, locked = _spin_against_brake(load, scene) if braked else (0.0, False)
-        if locked:
-            # delta = -1 of a locked cylinder that moves: d < 0, so that sigma is -1; its load has
-            # an inverse_inertia of 0
+        if braked:
+            spin_sign, locked = _spin_against_brake(load, scene)
             regime = Regime(
-                full_slip=False, direction=direction, sigma=-1.0, spin_sign=0.0, locked=True
+                full_slip=False, direction=direction, sigma=1.0, spin_sign=spin_sign, locked=locked
             )
-            spin_sign = 0.0
+            # the load of a locked cylinder has an inverse_inertia of 0
             load = evaluate_load(tau_drive, segment, regime, work)
-        sticks, d = solve_d_at_departure(load, spin_sign, scene)
+        sticks, d = solve_d_at_departure(load, regime.spin_sign, scene)
         if sticks and kind == ROLLS_OFF:
             return AMBIGUOUS, REGIME_AT_REST, 0.0
         if sticks:
@@ -534,14 +485,8 @@ def depart_from_rest(tau, segment, work):
             # that d has a little later.
             load = evaluate_load(tau, segment, regime, work)
             kind = ROLLS_OFF
-            d_start = solve_d_at_departure(load, spin_sign, scene)[1]
-            departure = Regime(
-                full_slip=False,
-                direction=direction,
-                sigma=1.0 if d >= 0.0 else -1.0,
-                spin_sign=spin_sign,
-                locked=locked,
-            )
+            d_start = solve_d_at_departure(load, regime.spin_sign, scene)[1]
+            departure = change_slip(regime, False, 1.0 if d >= 0.0 else -1.0)
             if scene.mu <= 2.0 * scene.kappa:  # The residual decreases: there is no other root.
                 return kind, departure, d_start
     # Where the cylinder may roll off, sliding is a second motion only if its slip exceeds that of

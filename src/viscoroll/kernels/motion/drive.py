@@ -23,8 +23,9 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
+from typing import Any, NamedTuple
 
+from ..numerics.intrinsics import copy
 from ..numerics.jit import inline_kernel, kernel
 from ..records import (
     COL_COEFFICIENTS,
@@ -41,6 +42,7 @@ from ..records import (
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
     ROUNDING,
+    Gains,
     Load,
 )
 from .collocation import ROW_DRIVE, ROW_LENGTH, N, last_output_tau, node_time
@@ -399,3 +401,47 @@ def rest_threshold(segment, work):
         if work.options.rest_speed > 0.0 and is_undriven(segment, work.drive)
         else 0.0
     )
+
+
+class Drives(NamedTuple):
+    """Drives of many motions.
+
+    segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of
+        :mod:`.records`, with times and slopes in t, not in tau
+    gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains`
+    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
+    """
+
+    segments: Any
+    gains: Any
+    prescribed: int
+
+
+@kernel
+def drive_of_motion(drives, gamma, i, segments):
+    """Write the segments of one motion as functions of tau = gamma t.
+
+    Start, scale of time and the slope of the prescribed speed are converted from t to tau; forces,
+    torques and the prescribed speed are copied.
+
+    drives: Drives, over t; one for all motions, or one for each.
+    gamma: float, tau = gamma t, dimensionless, above 0.
+    i: int, index of the motion.
+    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`.records`, k and
+    columns as in ``drives.segments``.
+    Returns the Gains of the motion, those of the last one given if there are fewer; they are not
+    converted.
+    """
+    source = drives.segments[min(i, drives.segments.shape[0] - 1)]
+    for k in range(segments.shape[0]):
+        copy(source[k], segments[k])
+        # x = (tau - start) scale - 1 stays the same number, and so do the coefficients of functions
+        # of it; d(speed)/dtau = d(speed)/dt/gamma
+        segments[k, COL_START] *= gamma
+        segments[k, COL_SCALE] /= gamma
+        n_terms = n_coefficients(segments[k])
+        for n in range(DRIVE_RATE * n_terms, (DRIVE_RATE + 1) * n_terms):
+            segments[k, COL_COEFFICIENTS + n] *= 1.0 / gamma
+    n = min(i, drives.gains.shape[1] - 1)
+    gains = drives.gains
+    return Gains(gains[0, n], gains[1, n], gains[2, n], gains[3, n])

@@ -22,25 +22,17 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
 """
 
-from __future__ import annotations
-
-from typing import Any, NamedTuple
-
 import numpy as np
 
-from ..law.law_record import select_material
+from ..law.law_record import element, select_material
 from ..numerics.intrinsics import by_reference, by_value, copy, data_pointer, fill
 from ..numerics.jit import kernel
 from ..records import (
     ADDED_MASS_EXHAUSTED,
     AT_REST,
     CAME_TO_REST,
-    COL_COEFFICIENTS,
-    COL_SCALE,
-    COL_START,
     COMPLETED,
     DIRECTION_REVERSED,
-    DRIVE_RATE,
     NOT_UNIQUE,
     REGIME_AT_REST,
     ROLLING_LOSS,
@@ -48,7 +40,6 @@ from ..records import (
     STEP_TOO_SMALL,
     Batch,
     Drive,
-    Gains,
     Options,
     Scene,
     State,
@@ -82,10 +73,11 @@ from .departure_from_rest import (
     find_departure_time,
 )
 from .drive import (
+    Drives,
     continues_smoothly,
     current_load,
+    drive_of_motion,
     is_undriven,
-    n_coefficients,
     rest_threshold,
     segment_end,
 )
@@ -198,73 +190,42 @@ def added_mass_exhausted(event, state, regime, work):
 
 
 @kernel
-def _relaxes_within_rounding(state, regime, step_state, work):
-    """Return whether d relaxes, or changes by 1, within the rounding of time, 1e-13 of the time so
-    far; a bool.
-
-    The relaxation time is V divided by the modulus of the derivative of V d' in d, the time of a
-    change by 1 is V/|V d'|.  The result is False in full slip, at tau = 0, and where both moduli
-    are 0.
-
-    state, regime: State and Regime, the present ones; all fields are read.
-    step_state: StepState, with the time and its segment.
-    work: Workspace, of which Scene and Drive are read.
-    """
-    if regime.full_slip:
-        return False
-    rates = current_rates(state, regime, step_state, work)
-    # V over the moduli, multiplied out: they may be 0
-    return state.V < _TIME_ROUNDING * step_state.tau * max(
-        abs(rates.drate_dd), abs(rates.weighted_rate)
-    )
-
-
-@kernel
-def _vanishes_within_rounding(state, regime, step_state, work):
-    """Return whether V falls to 0 within the rounding of time, 1e-13 of the time so far, or is
-    negligible; a bool.
-
-    V is negligible at 1e-75 and below, if something drives or will.  It falls to 0 within the time
-    V/|V'| if V' is below 0; at tau = 0 or with V' at least 0 it does not.
-
-    state, regime: State and Regime, the present ones; all fields are read.
-    step_state: StepState, with the time and its segment.
-    work: Workspace, of which Scene and Drive are read.
-    """
-    if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
-        return True
-    # V/|V'| below 1e-13 tau, multiplied out with the sign of V': False for V' >= 0
-    return (
-        state.V
-        < -_TIME_ROUNDING * step_state.tau * current_rates(state, regime, step_state, work).V_rate
-    )
-
-
-@kernel
 def relax_creep(state, regime, step_state, work):
     """Relax d to its equilibrium at a fixed time and fixed p, by bisection, where no step can
     resolve its relaxation.
 
-    The equilibrium is the zero of V d', which is positive for smaller d; the added mass n in p
-    stays that of ``state``.
+    That is in partial slip where d relaxes, or changes by 1, within the rounding of time, 1e-13 of
+    the time so far.  The relaxation time is V divided by the modulus of the derivative of V d' in
+    d, the time of a change by 1 is V/|V d'|; neither is so short at tau = 0, or where both moduli
+    are 0.  The equilibrium is the zero of V d', which is positive for smaller d; the added mass n
+    in p stays that of ``state``.
 
-    state: State, the present one, in partial slip.
+    state: State, the present one.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
-    Returns (moves, State, Regime, StepState):
+    Returns (relaxes, moves, State, Regime, StepState):
 
-    - moves: False where V falls to 0 within rounding (:func:`_vanishes_within_rounding`): the other
-      three are unchanged then;
+    - relaxes: False in full slip, and where d takes longer: the last three are unchanged then;
+    - moves: False where V falls to 0 within that rounding too, in the time V/|V'| with V' below 0,
+      or is negligible, at 1e-75 and below, while something drives or will: the last three are
+      unchanged then;
     - State, Regime: at the equilibrium of d in partial slip, with sigma = 1 for d >= 0 and -1 else,
       and with the V that keeps p; in full slip with the slip of |d| = 1 where there is no
       equilibrium with |d| < 1;
     - StepState: the same time, with the length 1e-11 tau of the next step.
     """
-    if _vanishes_within_rounding(state, regime, step_state, work):
-        return False, state, regime, step_state
-    load = current_load(regime, step_state, work)
     rates = current_rates(state, regime, step_state, work)
+    rounding = _TIME_ROUNDING * step_state.tau
+    # V over the moduli, multiplied out: they may be 0
+    relaxes = state.V < rounding * max(abs(rates.drate_dd), abs(rates.weighted_rate))
+    if regime.full_slip or not relaxes:
+        return False, True, state, regime, step_state
+    negligible = state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive)
+    # V/|V'|, multiplied out with the sign of V': False for V' >= 0
+    if negligible or state.V < -rounding * rates.V_rate:
+        return True, False, state, regime, step_state
+    load = current_load(regime, step_state, work)
     n = added_inertia(state.V, work.scene)[0]
     # p = inertia V + inverse_mass omega with n of ``state``, n V for the integral of n over V; V
     # follows from it with omega = V (1 + delta).
@@ -284,10 +245,11 @@ def relax_creep(state, regime, step_state, work):
         d = 0.5 * (low + high)
     step_state = set_step_length(_STEP_AFTER_RELAXATION * step_state.tau, 0, step_state)
     if low > -1.0 and high < 1.0:
-        return True, state, regime, step_state
+        return True, True, state, regime, step_state
     # One end of the bracket never moved: V d' has no zero with |d| < 1, and slip is full.
     omega = state.V * (1.0 + creepage(state.V, regime.sigma, work.scene))
-    return True, State(state.V, omega), change_slip(regime, True, regime.sigma), step_state
+    regime = change_slip(regime, True, regime.sigma)
+    return True, True, State(state.V, omega), regime, step_state
 
 
 @kernel
@@ -442,12 +404,14 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
         if event == STEP_FAILED:
             # Where d relaxes faster than time resolves it is set to its equilibrium, once at a
             # time.
-            if step_state.tau <= relaxed_at or not _relaxes_within_rounding(
-                state, regime, step_state, work
-            ):
+            relaxes = step_state.tau > relaxed_at
+            if relaxes:
+                relaxed_at = step_state.tau
+                relaxes, moving, state, regime, step_state = relax_creep(
+                    state, regime, step_state, work
+                )
+            if not relaxes:
                 return STEP_TOO_SMALL, step_state
-            relaxed_at = step_state.tau
-            moving, state, regime, step_state = relax_creep(state, regime, step_state, work)
             continue
         # An event of exhausted added mass is not applied: the next turn of the loop ends the
         # motion.
@@ -478,7 +442,7 @@ def integrate_motion(V0, omega0, record):
     Two speeds below 1e-75 count as 0 where something drives or will, or where slip remains in free
     rolling at rest, by which the cylinder stops at once; elsewhere two
     speeds below 1e-150 are replaced by those of the free rolling in which sliding ends
-    (:func:`.motion_law.speeds_after_sliding`).  V0 counts as 0 up to 1e-150 of |omega0|.  From V =
+    (:func:`.regimes.speeds_after_sliding`).  V0 counts as 0 up to 1e-150 of |omega0|.  From V =
     omega = 0 the cylinder stays at rest until the drive moves it.
 
     V0, omega0: float, initial speeds of either sign, in units of R/T_epsilon and 1/T_epsilon.
@@ -520,61 +484,6 @@ def integrate_motion(V0, omega0, record):
 INFO_COLUMNS = ("status", "steps", "switches", "onset_time", "rest_time")
 #: Number of these columns.
 N_INFO_COLUMNS = len(INFO_COLUMNS)
-
-
-class Drives(NamedTuple):
-    """Drives of many motions.
-
-    segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of
-        :mod:`.records`, with times and slopes in t, not in tau
-    gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains`
-    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
-    """
-
-    segments: Any
-    gains: Any
-    prescribed: int
-
-
-@kernel
-def _value_of_motion(array, i):
-    """Return the value of a motion: ``array[i]``, or the last value where ``array`` is shorter.
-
-    array: (1,) or (n,), one value for all motions, or one for each; not empty.
-    i: int, index of the motion, 0 ... n - 1.
-    Returns a value of the type of the array.
-    """
-    return array[min(i, array.size - 1)]
-
-
-@kernel
-def _drive_of_motion(drives, gamma, i, segments):
-    """Write the segments of one motion as functions of tau = gamma t.
-
-    Start, scale of time and the slope of the prescribed speed are converted from t to tau; forces,
-    torques and the prescribed speed are copied.
-
-    drives: Drives, over t; one for all motions, or one for each.
-    gamma: float, tau = gamma t, dimensionless, above 0.
-    i: int, index of the motion.
-    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`.records`, k and
-    columns as in ``drives.segments``.
-    Returns the Gains of the motion, those of the last one given if there are fewer; they are not
-    converted.
-    """
-    source = drives.segments[min(i, drives.segments.shape[0] - 1)]
-    for k in range(segments.shape[0]):
-        copy(source[k], segments[k])
-        # x = (tau - start) scale - 1 stays the same number, and so do the coefficients of functions
-        # of it; d(speed)/dtau = d(speed)/dt/gamma
-        segments[k, COL_START] *= gamma
-        segments[k, COL_SCALE] /= gamma
-        n_terms = n_coefficients(segments[k])
-        for n in range(DRIVE_RATE * n_terms, (DRIVE_RATE + 1) * n_terms):
-            segments[k, COL_COEFFICIENTS + n] *= 1.0 / gamma
-    n = min(i, drives.gains.shape[1] - 1)
-    gains = drives.gains
-    return Gains(gains[0, n], gains[1, n], gains[2, n], gains[3, n])
 
 
 @kernel(allocates=True)
@@ -626,23 +535,18 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
             fill(0.0, array)
         fill(1.0, nodes[ROW_ONES : ROW_ONES + ROW_LENGTH])
         select_material(motions.law, i)
-        kappa = _value_of_motion(motions.kappa, i)
-        mu = _value_of_motion(motions.mu, i)
-        gamma = _value_of_motion(motions.gamma, i)
-        j = _value_of_motion(motions.j, i)
+        gamma = element(motions.gamma, i)
         for k in range(t.size):
             tau[k] = t[k] * gamma
         scene = Scene(
             law=motions.law,
             moments_differ=motions.moments_differ,
-            kappa=kappa,
-            mu=mu,
+            kappa=element(motions.kappa, i),
+            mu=element(motions.mu, i),
             gamma=gamma,
-            j=j,
+            j=element(motions.j, i),
         )
-        drive = Drive(segments, _drive_of_motion(drives, gamma, i, segments), drives.prescribed)
-        V0 = _value_of_motion(motions.V0, i)
-        omega0 = _value_of_motion(motions.omega0, i)
+        drive = Drive(segments, drive_of_motion(drives, gamma, i, segments), drives.prescribed)
         work = Workspace(
             scene=scene,
             drive=drive,
@@ -657,7 +561,7 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
             p_matrix=data_pointer(p_matrix),
             d_matrix=data_pointer(d_matrix),
         )
-        result = integrate_motion(V0, omega0, work)
+        result = integrate_motion(element(motions.V0, i), element(motions.omega0, i), work)
         for n in range(rows.size):
             copy(quantities[rows[n]], out[n, i])
         info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result

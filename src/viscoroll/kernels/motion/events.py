@@ -17,8 +17,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 from ..numerics.intrinsics import by_value
 from ..numerics.jit import inline_kernel, kernel
 from ..records import DRIVE_BRAKE, PRESCRIBED_V, State
@@ -45,7 +43,7 @@ from .collocation import (
 )
 from .drive import load_at_node
 from .motion_law import creepage, omega_and_delta, stick_edge_function
-from .rhs import rhs_and_forces_at_node
+from .rhs import evaluate_rhs, required_forces
 
 #: A step ends at an event where the function of the event is below this times rtol, relative to the
 #: scale of the function: a hundredth of the tolerance.
@@ -68,7 +66,7 @@ _START_ROUNDING = 1e-14
 _EDGE_ROUNDING = 1e-13
 #: Position v up to which an interpolant is extrapolated beyond the step in search of a zero: half a
 #: step beyond its end.
-_EXTRAPOLATION_END = 3.0
+EXTRAPOLATION_END = 3.0
 #: Position v from which on no zero was found on the extrapolation, whose search then ends at 3.
 NOT_FOUND = 2.99
 #: Offset in v of the difference quotient by which a zero is refined; the function itself is
@@ -153,9 +151,10 @@ def evaluate_event_functions(step, regime, work):
             nodes[OMEGA_ZERO + i] = regime.spin_sign * spin_function
             nodes[BELOW_REST_SPEED + i] = max(abs(V), abs(omega)) - rest
         if regime.locked:  # Squares are smooth where the torque of the brake changes its sign.
-            limit = load_at_node(i, regime, work).brake
-            torque = rhs_and_forces_at_node(i, regime, work)[1][2]
-            nodes[BRAKE_RELEASE + i] = limit * limit - torque * torque
+            load = load_at_node(i, regime, work)
+            rates = evaluate_rhs(State(V, omega_or_d), load, regime, work.scene)
+            torque = required_forces(V, rates.omega, rates, load, regime, scene.j)[2]
+            nodes[BRAKE_RELEASE + i] = load.brake * load.brake - torque * torque
 
 
 @kernel
@@ -191,43 +190,24 @@ def _first_negative_node(event, last, nodes):
 
 
 @kernel
-def locate_zero(event, node, nodes):
-    """Return the position v at which the interpolant of an event function falls through 0.
-
-    event: int, code of the event and index in ``nodes`` of the row of its function.
-    node: int, first node at which the function is negative, so that the zero lies between this node
-    and the one before;
-    0: the zero is sought beyond the right end of the step, up to half its length.
-    nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written.
-    Returns a float, v: for ``node`` > 0 in [0, 2]; for ``node`` = 0 in [2, 3], where 2 means that
-    the function is not positive at the right end, and at least NOT_FOUND = 2.99 that it has no zero
-    before that position.
-    """
-    fit_dense_output(event, ROW_DENSE_EVENT, nodes)
-    # v = 1 + t; the interpolant leaves out the value at node 0, which is passed
-    low, high = (
-        (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
-    )
-    return _find_interpolant_zero(nodes[event], low, high, nodes)
-
-
-@kernel
-def _find_interpolant_zero(start, low, high, nodes):
-    """Return the position v at which the stored interpolant of an event function falls through 0,
-    by false position.
+def locate_zero(event, low, high, nodes):
+    """Return the position v at which the interpolant of an event function falls through 0, by false
+    position.
 
     The weights of Anderson and Bjorck (BIT 13, 1973) move both ends of the bracket: that needs a
     sixth of the evaluations of a bisection.
 
-    start: float, value of the event function at v = 0, which the interpolant leaves out.
+    event: int, code of the event and index in ``nodes`` of the row of its function.
     low, high: float, ends of the bracket in v; the function should be positive at ``low`` and
     negative at ``high``.
-    nodes: Workspace.nodes, with the interpolant at ROW_DENSE_EVENT.
+    nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written.
     Returns a float in [low, high]: ``low`` if the function is 0, negative or NaN there, else
     ``high`` if it is positive there; else the end of the last bracket with the smaller modulus of
     the function, as the weights have reduced it, and ``high`` of two equal ones: a zero to
     rounding.
     """
+    fit_dense_output(event, ROW_DENSE_EVENT, nodes)
+    start = nodes[event]  # the value at v = 0, which the interpolant leaves out
     f_low = start + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT)
     f_high = start + evaluate_dense_output(high, nodes, ROW_DENSE_EVENT)
     if not f_low > 0.0:  # True for NaN too.
@@ -253,23 +233,23 @@ def _find_interpolant_zero(start, low, high, nodes):
 
 
 @kernel
-def _locate_double_crossing(event, nodes):
-    """Return the v at which an event function falls through 0 between nodes at which it is
+def _locate_double_crossing(nodes):
+    """Return the v at which the function of STICK_EDGE falls through 0 between nodes at which it is
     positive; 0.0 for none.
 
     At each of nodes 1 ... N - 1 at which the function is positive and smaller than at both
     neighbours, the minimum of the interpolant between these is located by a ternary search.  The
     first minimum below 0 counts, with the zero before it.
 
-    event: int, code of the event and index in ``nodes`` of the row of its function.
     nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written if there is
     such a node.
     Returns a float: a v between nodes i - 1 and i + 1, or 0.0.  A minimum between two nodes of
     equal value is not found.
     """
     for i in range(1, N):
-        if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
-            fit_dense_output(event, ROW_DENSE_EVENT, nodes)
+        value = nodes[STICK_EDGE + i]
+        if 0.0 < value < min(nodes[STICK_EDGE + i - 1], nodes[STICK_EDGE + i + 1]):
+            fit_dense_output(STICK_EDGE, ROW_DENSE_EVENT, nodes)
             start = 1.0 + NODES[i - 1]  # where the function is still positive
             low = 1.0 + NODES[i - 1]
             high = 1.0 + NODES[i + 1]
@@ -282,8 +262,8 @@ def _locate_double_crossing(event, nodes):
                     high -= third
                 else:
                     low += third
-            if nodes[event] + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT) < 0.0:
-                return _find_interpolant_zero(nodes[event], start, low, nodes)
+            if nodes[STICK_EDGE] + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT) < 0.0:
+                return locate_zero(STICK_EDGE, start, low, nodes)
     return 0.0
 
 
@@ -316,14 +296,15 @@ def find_first_event(step, regime, work):
         )
         if node == 0:
             continue
-        v_zero = locate_zero(candidate, node, nodes)
+        # v = 1 + t of the nodes
+        v_zero = locate_zero(candidate, 1.0 + NODES[node - 1], 1.0 + NODES[node], nodes)
         # node is at most ``last``: before it, or between the same nodes as the first event so far
         if event == NO_EVENT or node < last or v_zero < v:
             event = candidate
             last = node
             v = v_zero
     if event == NO_EVENT and regime.full_slip:
-        v_zero = _locate_double_crossing(STICK_EDGE, nodes)
+        v_zero = _locate_double_crossing(nodes)
         if v_zero > 0.0:
             return STICK_EDGE, v_zero
     return event, v
@@ -346,6 +327,7 @@ def find_missed_event(step, regime, work):
     Returns an int, the first such event in the order of the codes, or NO_EVENT.
     """
     nodes = work.nodes
+    tolerance = max(_EVENT_TOLERANCE * work.options.rtol, _EVENT_ROUNDING)
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
         # The rest threshold is asked for where a regime begins.  The equations of partial slip
         # continue into full slip: a missed edge does no harm there.
@@ -363,10 +345,7 @@ def find_missed_event(step, regime, work):
         # V = 0 is accurate relative to omega; a prescribed V is accurate relative to itself.
         if candidate == V_ZERO and work.drive.prescribed != PRESCRIBED_V:
             scale = max(scale, nodes[ROW_SPEED + N])
-        if (
-            largest <= _START_ROUNDING * scale
-            and nodes[candidate + N] < -_event_tolerance(work.options.rtol) * scale
-        ):
+        if largest <= _START_ROUNDING * scale and nodes[candidate + N] < -tolerance * scale:
             return candidate
     return NO_EVENT
 
@@ -452,16 +431,6 @@ def _event_scale(event, nodes):
     return largest
 
 
-@inline_kernel
-def _event_tolerance(rtol):
-    """Return the value of an event function divided by its scale up to which it counts as 0:
-    max(0.01 rtol, 4e-15).
-
-    rtol: float, relative tolerance of the motion, dimensionless, > 0.
-    """
-    return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)
-
-
 @kernel
 def ends_at_event(event, nodes, rtol):
     """Return whether a step ends at an event: its function has fallen to 0 at the right end; a
@@ -483,5 +452,5 @@ def ends_at_event(event, nodes, rtol):
     return (
         last < largest
         and largest > _EDGE_ROUNDING * scale
-        and abs(last) <= _event_tolerance(rtol) * scale
+        and abs(last) <= max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING) * scale
     )

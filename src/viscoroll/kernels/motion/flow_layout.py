@@ -1,4 +1,4 @@
-"""The layout of a flow map, and the contact states from which it is made.
+"""The layout of a flow map and of its outputs, and the contact states from which it is made.
 
 A flow map (docs/internals_motion.md, Flow map) consists of polynomials of 24 powers, one for each
 octave of their variable, as in the rows of the law.  All tables form one vector; pairs of functions
@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..law.law_functions import H_over_F2, length_and_moment, locate_row
-from ..numerics.jit import kernel
+from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import TERMS
+from ..records import AT_REST, Output
 
 # --- Layout of a flow map ---
 
@@ -183,3 +184,53 @@ def states(V, delta, kappa, mu, law, out):
         out[MOMENT, i] = V[i] * found.scale * found.m
         out[TRACTION, i] = np.sign(delta[i]) * mu * (1.0 - w * w * value)
         out[STIFFNESS, i] = 4.0 * kappa * w * (value - 0.5 * v * slope)
+
+
+# --- Outputs of a motion that is looked up ---
+
+#: row of the speed of the axis; rows are those of :class:`.records.Output`, and one more
+OUT_V = 0
+#: row of the angular velocity
+OUT_OMEGA = 1
+#: row of the distance
+OUT_X = 2
+#: row of the angle
+OUT_ANGLE = 3
+#: row of the energy lost by slip
+SLIP_LOSS = 6
+#: row of the energy lost by rolling resistance
+ROLLING_LOSS = 7
+#: number of these rows
+ROWS = 8
+
+
+@inline_kernel
+def write_output(out, column, state):
+    """Write one output state, of any part of a motion, into the rows of the module.
+
+    out : outputs (ROWS, times), of which one column is written, all rows but ROLLING_LOSS.
+    column : int, index of the output time.
+    state : :class:`.records.Output` of floats, whose fields are in the order of the rows: V, omega,
+        distance and angle (times gamma), delta, regime (a code of :mod:`.records`) and loss by
+        slip, dimensionless, with the signs of the motion, not mirrored.
+    Returns nothing.
+    """
+    for row in range(len(state)):
+        out[row, column] = state[row]
+
+
+@inline_kernel
+def write_rest(at, x, angle, loss, out):
+    """Write outputs at rest, V = omega = delta = 0 and regime AT_REST, from a column to the last.
+
+    at : int, first column to write; nothing is written if it is the number of columns.
+    x, angle : float, distance and angle, times gamma, of all of them, in the frame of the caller.
+    loss : float, slip loss of all of them.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.  Returns nothing.
+    """
+    for column in range(at, out.shape[1]):
+        write_output(
+            out,
+            column,
+            Output(V=0.0, omega=0.0, x=x, angle=angle, delta=0.0, regime=float(AT_REST), loss=loss),
+        )

@@ -63,9 +63,8 @@ HIGHEST = 2.0 ** (flow_layout.HIGH - 2)
 #: ratio of the sliding time to T below which the difference of X cancels and V is integrated
 #: instead
 _SHORT = 0.02
-#: stiff rate of a motion on the slow manifold: its layer has length 0
-_NO_LAYER = 1e30
-_LOWEST_U = 2.0**flow_layout.LAYER_LOW
+#: lower end of the layer coordinate u
+LOWEST_U = 2.0**flow_layout.LAYER_LOW
 _LOWEST_SLOW_LOG = -flow_layout.SLOW_BINS * flow_layout.SLOW_WIDTH
 #: numbers of a row of the table of full slip
 _SLIDE = SHAPES.slide[2]
@@ -306,17 +305,6 @@ def manifold_at_speed(v, table):
     return evaluate_pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
 
 
-@kernel
-def asymptote_on_manifold(slow_log):
-    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already.
-
-    slow_log : float, its slow logarithm at the time of its onset.
-    Returns an asymptote that the motion exceeds by nothing, with split 1 and a rate of 1e30, so
-    large that its boundary layer has practically no length.
-    """
-    return Asymptote(slow_log=slow_log, rate=_NO_LAYER, split=1.0, x=0.0, angle=0.0, loss=0.0)
-
-
 @inline_kernel
 def read_asymptote(family, v, level, flow):
     """Return the motion on the slow manifold that a motion approaches after the onset of partial
@@ -363,7 +351,41 @@ def layer_coordinate(E, split):
     split : float, the E at which the layer is divided, > 0.
     Returns u, a float: 2^LAYER_LOW at the onset, 1 at the split, 1 + E - split after it.
     """
-    return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
+    return LOWEST_U + (1.0 - LOWEST_U) * E / split if E < split else 1.0 + E - split
+
+
+@kernel
+def initial_u(size, slow, turns):
+    """Return the first guess of the layer coordinate u at which delta has fallen to a given value,
+    by Carter's law.
+
+    size : float, delta/delta_star of the start, in [-1, 1], times 1 for PLUS and -1 for MINUS:
+        negative beyond delta = 0.
+    slow : float, delta/delta_star on the slow manifold at the speed of the start, times the same
+        sign; less than ``size``, in (-1, 1).
+    turns : bool, whether motions of this family pass delta = 0 (then the layer has a split there).
+
+    Returns u, a float from 2^LAYER_LOW on, below 1 before the split of the layer; it may lie beyond
+    the end of the layer, to which the caller limits it.
+
+    Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction is 1 - r^2,
+    so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
+    """
+    traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)  # on the slow manifold, over mu
+    a = np.sqrt(1.0 - traction)
+    # From r = 0 at the onset, E = ln((a + r)/(a - r))/a; r = 1 at the split.  1e-14 keeps the
+    # logarithms finite where the start is on the manifold.
+    if size > 0.0:
+        r = 1.0 - size
+        E = np.log((a + r) / max(a - r, 1e-14)) / a
+        split = np.log((a + 1.0) / max(a - 1.0, 1e-14)) / a if turns else 1.0
+        return layer_coordinate(E, split)
+    # Beyond delta = 0 the traction is r^2 - 1, and r falls from 1 to b, its value on the manifold:
+    # dr/dE = -(r^2 - b^2)/2.
+    r = 1.0 + size
+    b = max(1.0 + slow, 1e-3)  # not 0, by which is divided; it is a first guess
+    # u = 1 at r = 1, where delta = 0; u then grows as E
+    return 1.0 + np.log((1.0 - b) / (1.0 + b) * (r + b) / max(r - b, 1e-14)) / b
 
 
 @inline_kernel
@@ -450,11 +472,11 @@ def layer_value(table, column, at, t, s):
 
 
 @kernel
-def layer_state(stick, asymptote, elapsed, level, flow):
+def layer_state(family, v, asymptote, elapsed, level, flow):
     """Return the state of a motion within the boundary layer after the onset of partial slip,
     mirrored so that V > 0.
 
-    stick : :class:`.records.StickOnset`, of which family and v = kappa V at the onset are read.
+    family, v : fields of :class:`.records.StickOnset`: kind of the onset, and kappa V there.
     asymptote : :class:`.records.Asymptote` of the motion, of which rate k0 and split are read.
     elapsed : float, time tau = gamma t since the onset, >= 0 and at most LAYER_END/k0.
     level : SPEEDS, PATH or LOSS: quantities to compute.
@@ -466,8 +488,8 @@ def layer_state(stick, asymptote, elapsed, level, flow):
     """
     table = flow.table
     E = elapsed * asymptote.rate
-    at, t, s = locate_in_layer(stick.family, stick.v, layer_coordinate(E, asymptote.split), flow)
-    V0 = stick.v / flow.kappa
+    at, t, s = locate_in_layer(family, v, layer_coordinate(E, asymptote.split), flow)
+    V0 = v / flow.kappa
     x = angle = loss = 0.0
     # the table has what exceeds constant V0, in units of V0/k0: E is the path at constant V0
     if level >= PATH:

@@ -37,26 +37,43 @@ import numpy as np
 from ..law.law_record import element
 from ..numerics.jit import inline_kernel, kernel
 from ..records import (
-    AT_REST,
     CAME_TO_REST,
     COMPLETED,
     FULL_SLIP,
     PARTIAL_SLIP,
+    Asymptote,
     FullSlipStart,
     Output,
     Request,
     StickOnset,
 )
 from . import flow_layout
-from .flow_layout import LAYER_CREEP, LAYER_END, LAYER_LN_V, MINUS, OCTAVES, PLUS
+from .flow_layout import (
+    LAYER_CREEP,
+    LAYER_END,
+    LAYER_LN_V,
+    MINUS,
+    OCTAVES,
+    OUT_ANGLE,
+    OUT_OMEGA,
+    OUT_V,
+    OUT_X,
+    PLUS,
+    ROLLING_LOSS,
+    ROWS,
+    SLIP_LOSS,
+    write_output,
+    write_rest,
+)
 from .flow_lookup import (
     HIGHEST,
     LOSS,
     LOWEST,
+    LOWEST_U,
     PATH,
     SPEEDS,
-    asymptote_on_manifold,
     full_slip_integrals,
+    initial_u,
     layer_state,
     layer_value_and_slopes,
     locate_in_layer,
@@ -85,45 +102,10 @@ _RESIDUAL = 1e-10
 _MAX_ITERATIONS = 12
 #: step after which the iteration ends: the error that remains is about its square
 _CONVERGED = 1e-7
-#: lower end of the layer coordinate u
-_LOWEST_U = 2.0**flow_layout.LAYER_LOW
+#: stiff rate of a motion on the slow manifold: its layer has length 0
+_NO_LAYER = 1e30
 #: upper end of the layer coordinate u, one rounding below the table's edge
 _HIGHEST_U = 2.0**flow_layout.LAYER_HIGH * (1.0 - 2.0**-50)
-
-
-@kernel
-def _initial_u(size, slow, turns):
-    """Return the first guess of the layer coordinate u at which delta has fallen to a given value,
-    by Carter's law.
-
-    size : float, delta/delta_star of the start, in [-1, 1], times 1 for PLUS and -1 for MINUS:
-        negative beyond delta = 0.
-    slow : float, delta/delta_star on the slow manifold at the speed of the start, times the same
-        sign; less than ``size``, in (-1, 1).
-    turns : bool, whether motions of this family pass delta = 0 (then the layer has a split there).
-
-    Returns u, a float from 2^LAYER_LOW on, below 1 before the split of the layer; it may lie beyond
-    the end of the layer, to which the caller limits it.
-
-    Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction is 1 - r^2,
-    so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
-    """
-    traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)  # on the slow manifold, over mu
-    a = np.sqrt(1.0 - traction)
-    # From r = 0 at the onset, E = ln((a + r)/(a - r))/a; r = 1 at the split.  1e-14 keeps the
-    # logarithms finite where the start is on the manifold.
-    if size > 0.0:
-        r = 1.0 - size
-        E = np.log((a + r) / max(a - r, 1e-14)) / a
-        split = np.log((a + 1.0) / max(a - 1.0, 1e-14)) / a if turns else 1.0
-        # the layer coordinate of E (flow_lookup.layer_coordinate)
-        return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
-    # Beyond delta = 0 the traction is r^2 - 1, and r falls from 1 to b, its value on the manifold:
-    # dr/dE = -(r^2 - b^2)/2.
-    r = 1.0 + size
-    b = max(1.0 + slow, 1e-3)  # not 0, by which is divided; it is a first guess
-    # u = 1 at r = 1, where delta = 0; u then grows as E
-    return 1.0 + np.log((1.0 - b) / (1.0 + b) * (r + b) / max(r - b, 1e-14)) / b
 
 
 @inline_kernel
@@ -175,7 +157,7 @@ def find_onset(V, delta, edge, flow):
         return PLUS, v, 0.0, False
     family, sign = (PLUS, 1.0) if gap > 0.0 else (MINUS, -1.0)
     turns = read_asymptote(family, v, SPEEDS, flow).split != 1.0
-    u = _initial_u(sign * delta / edge, sign * slow / edge, turns)
+    u = initial_u(sign * delta / edge, sign * slow / edge, turns)
     # Iterates: v0 = kappa V at the onset, ln_v0 = ln(v0/v), and u.
     v0 = v
     ln_v0 = 0.0
@@ -183,7 +165,7 @@ def find_onset(V, delta, edge, flow):
     # the test of convergence follows the evaluation, so that ln_V and creep belong to the last v0
     # and u
     for _ in range(_MAX_ITERATIONS):
-        u = _clamp(u, _LOWEST_U, _HIGHEST_U)
+        u = _clamp(u, LOWEST_U, _HIGHEST_U)
         at, t, s = locate_in_layer(family, v0, u, flow)
         ln_V, ln_t, ln_s = layer_value_and_slopes(flow.table, LAYER_LN_V, at, t, s)
         creep, creep_t, creep_s = layer_value_and_slopes(flow.table, LAYER_CREEP, at, t, s)
@@ -193,7 +175,7 @@ def find_onset(V, delta, edge, flow):
         # table has passed the manifold (or NaN) u is brought nearer to the onset.
         away = (creep - slow) / gap
         if not away > 0.0:
-            u = 0.5 * (u + _LOWEST_U)  # ``change`` stays: the iteration has not converged
+            u = 0.5 * (u + LOWEST_U)  # ``change`` stays: the iteration has not converged
             continue
         # Slopes in ln v0 and u: s and t are 4 m - 3 with the mantissa m of v0 and of u.
         per_v = t + 3.0
@@ -219,7 +201,7 @@ def find_onset(V, delta, edge, flow):
         change = abs(shift) + abs(second) * np.sqrt(abs(gap))
     split = read_asymptote(family, v0, SPEEDS, flow).split
     # E of u: the inverse of flow_lookup.layer_coordinate
-    E = (u - _LOWEST_U) / (1.0 - _LOWEST_U) * split if u < 1.0 else u - 1.0 + split
+    E = (u - LOWEST_U) / (1.0 - LOWEST_U) * split if u < 1.0 else u - 1.0 + split
     found = abs(v0 * np.exp(ln_V) - v) <= _RESIDUAL * v and abs(creep - delta) <= _RESIDUAL
     if found and E <= flow_layout.LAYER_END:
         return family, v0, E, True
@@ -234,61 +216,6 @@ NOT_COVERED = -1
 #: of the initial one
 _MAX_SPEED_RATIO = 4096.0
 # Rows of the array of outputs.
-#: speed of the axis
-_V = 0
-#: angular velocity
-_OMEGA = 1
-#: distance
-_X = 2
-#: angle
-_ANGLE = 3
-#: creepage
-_DELTA = 4
-#: regime
-_REGIME = 5
-#: energy lost by slip
-SLIP_LOSS = 6
-#: energy lost by rolling resistance
-ROLLING_LOSS = 7
-#: number of these rows
-ROWS = 8
-
-
-@inline_kernel
-def _write_output(out, column, state):
-    """Write one output state, of any part of a motion, into the rows of the module.
-
-    out : outputs (ROWS, times), of which one column is written, all rows but ROLLING_LOSS.
-    column : int, index of the output time.
-    state : :class:`.records.Output`: V, omega, distance and angle (times gamma), delta, regime (a
-        code of :mod:`.records`) and loss by slip, dimensionless, with the signs of the
-        motion, not mirrored.
-    Returns nothing.
-    """
-    out[_V, column] = state.V
-    out[_OMEGA, column] = state.omega
-    out[_X, column] = state.x
-    out[_ANGLE, column] = state.angle
-    out[_DELTA, column] = state.delta
-    out[_REGIME, column] = state.regime
-    out[SLIP_LOSS, column] = state.loss
-
-
-@inline_kernel
-def _write_rest(at, x, angle, loss, out):
-    """Write outputs at rest, V = omega = delta = 0 and regime AT_REST, from a column to the last.
-
-    at : int, first column to write; nothing is written if it is the number of columns.
-    x, angle : float, distance and angle, times gamma, of all of them, in the frame of the caller.
-    loss : float, slip loss of all of them.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.  Returns nothing.
-    """
-    for column in range(at, out.shape[1]):
-        _write_output(
-            out,
-            column,
-            Output(V=0.0, omega=0.0, x=x, angle=angle, delta=0.0, regime=AT_REST, loss=loss),
-        )
 
 
 @inline_kernel
@@ -356,42 +283,33 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     """
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
+    x = angle = loss = 0.0
     if E > LAYER_END or not covered:
-        # tau is so small, by the rate of this asymptote, that the layer ends at tau = 0, the start
-        asymptote = asymptote_on_manifold(manifold_at_speed(v, flow.table)[0] if covered else 0.0)
-        return (
-            StickOnset(
-                frame=frame,
-                family=family,
-                v=v,
-                tau=-LAYER_END / asymptote.rate,
-                x=0.0,
-                angle=0.0,
-                loss=0.0,
-            ),
-            asymptote,
-            covered,
+        # E is at the end of a layer of practically no length: tau is close to 0, the start
+        E = LAYER_END
+        asymptote = Asymptote(
+            slow_log=manifold_at_speed(v, flow.table)[0] if covered else 0.0,
+            rate=_NO_LAYER,
+            split=1.0,
+            x=0.0,
+            angle=0.0,
+            loss=0.0,
         )
-    asymptote = read_asymptote(family, v, level, flow)
+    else:
+        asymptote = read_asymptote(family, v, level, flow)
+        if E != 0.0 and level >= PATH:
+            elapsed = E / asymptote.rate
+            _, _, x, angle, loss = layer_state(family, v, asymptote, elapsed, level, flow)
     stick = StickOnset(
-        frame=frame, family=family, v=v, tau=-E / asymptote.rate, x=0.0, angle=0.0, loss=0.0
+        frame=frame,
+        family=family,
+        v=v,
+        tau=-E / asymptote.rate,
+        x=-frame * x,
+        angle=-frame * angle,
+        loss=-loss,
     )
-    if E == 0.0 or level < PATH:
-        return stick, asymptote, covered
-    _, _, x, angle, loss = layer_state(stick, asymptote, -stick.tau, level, flow)
-    return (
-        StickOnset(
-            frame=frame,
-            family=family,
-            v=v,
-            tau=stick.tau,
-            x=-frame * x,
-            angle=-frame * angle,
-            loss=-loss,
-        ),
-        asymptote,
-        True,
-    )
+    return stick, asymptote, covered
 
 
 @inline_kernel
@@ -424,7 +342,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
             x = slide_distance((T0, X0), tau, flow)
             angle = (x - tau * (w + mu * tau)) * per_j
         delta = (omega - V) / V if V != 0.0 else np.inf
-        _write_output(
+        write_output(
             out,
             at,
             Output(
@@ -433,7 +351,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
                 x=frame * x,
                 angle=frame * angle,
                 delta=delta,
-                regime=FULL_SLIP,
+                regime=float(FULL_SLIP),
                 loss=mu * (angle - x),
             ),
         )
@@ -472,7 +390,9 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
         elapsed = tau_out[at] - stick.tau
         x = angle = loss = 0.0
         if tau_out[at] < layer_end:
-            V, delta, x, angle, loss = layer_state(stick, asymptote, elapsed, level, flow)
+            V, delta, x, angle, loss = layer_state(
+                stick.family, stick.v, asymptote, elapsed, level, flow
+            )
         else:
             span = flow.slow_rate * elapsed
             now = asymptote.slow_log - span
@@ -483,18 +403,16 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
                 angle = angle + asymptote.angle
             if level >= LOSS:
                 loss = total_loss - remaining_slip_loss(now, flow.table)
-        x = stick.x + frame * x
-        angle = stick.angle + frame * angle
-        _write_output(
+        write_output(
             out,
             at,
             Output(
                 V=frame * V,
                 omega=frame * V * (1.0 + delta),
-                x=x,
-                angle=angle,
+                x=stick.x + frame * x,
+                angle=stick.angle + frame * angle,
                 delta=delta,
-                regime=PARTIAL_SLIP,
+                regime=float(PARTIAL_SLIP),
                 loss=stick.loss + loss,
             ),
         )
@@ -546,7 +464,7 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     )
     x = stick.x + stick.frame * (x + asymptote.x)
     angle = stick.angle + stick.frame * (angle + asymptote.angle)
-    _write_rest(at, x, angle, stick.loss + loss, out)
+    write_rest(at, x, angle, stick.loss + loss, out)
     return CAME_TO_REST, rest_time
 
 
@@ -580,7 +498,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     kappa = flow.kappa
     level = request.level
     if abs(V0) < request.rest and abs(omega0) < request.rest:
-        _write_rest(0, 0.0, 0.0, 0.0, out)
+        write_rest(0, 0.0, 0.0, 0.0, out)
         return CAME_TO_REST, np.nan, 0.0
     if not kappa * abs(V0) < HIGHEST:  # True for NaN too.
         return NOT_COVERED, np.nan, np.nan
@@ -599,7 +517,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     if not covered or stick.v < 2.0 * kappa * request.rest:
         return NOT_COVERED, np.nan, np.nan
     while at < tau_out.size and tau_out[at] == 0.0:
-        _write_output(
+        write_output(
             out,
             at,
             Output(
@@ -608,7 +526,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
                 x=0.0,
                 angle=0.0,
                 delta=(omega0 - V0) / V0 if V0 != 0.0 else np.inf,
-                regime=first,
+                regime=float(first),
                 loss=0.0,
             ),
         )
@@ -651,15 +569,11 @@ def look_up_motions(flow, motions, result, start, stop):
     j = flow.j
     level = SPEEDS
     # the highest level that a requested row needs; the rolling loss needs the slip loss
-    for n in range(rows.size):
-        level = max(
-            level,
-            PATH
-            if rows[n] == _X or rows[n] == _ANGLE
-            else LOSS
-            if rows[n] >= SLIP_LOSS
-            else SPEEDS,
-        )
+    for row in rows:
+        if row == OUT_X or row == OUT_ANGLE:
+            level = max(level, PATH)
+        if row >= SLIP_LOSS:
+            level = LOSS
     request = Request(level, rest, slow_log_at_rest(rest, flow) if rest > 0.0 else 0.0)
     for i in range(start, stop):
         V = element(V0, i)
@@ -668,8 +582,8 @@ def look_up_motions(flow, motions, result, start, stop):
         if level >= LOSS:
             # Kinetic energy (V^2 + j omega^2)/2 lost since the start, as products of differences.
             for m in range(t.size):
-                V_now = one[_V, m]
-                omega_now = one[_OMEGA, m]
+                V_now = one[OUT_V, m]
+                omega_now = one[OUT_OMEGA, m]
                 lost = 0.5 * (
                     (V - V_now) * (V + V_now) + j * (omega - omega_now) * (omega + omega_now)
                 )
@@ -679,6 +593,6 @@ def look_up_motions(flow, motions, result, start, stop):
         result.switches[i] = 1 if onset >= 0.0 else 0  # 0 for NaN
         for n in range(rows.size):
             row = rows[n]
-            scale = 1.0 / gamma if row == _X or row == _ANGLE else 1.0
+            scale = 1.0 / gamma if row == OUT_X or row == OUT_ANGLE else 1.0
             for m in range(t.size):
                 result.out[n, i, m] = one[row, m] * scale

@@ -25,8 +25,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -54,12 +52,10 @@ from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import TERMS, evaluate_pair
 from .table_law import (
     Loads,
-    SlowLaw,
     Width,
     asymmetry_of_table,
     friction_by_shear,
     pull_of_table,
-    slow_law_of_table,
     width_at,
 )
 
@@ -126,32 +122,6 @@ def _evaluate_added_mass(law, V, kappa, gamma):
     return gamma * N, gamma * np.copysign(kappa, V) * slope, gamma * integral / kappa
 
 
-@inline_kernel
-def added_mass(law, V, kappa, gamma):
-    """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law
-    of steady rolling.
-
-    It is :func:`_evaluate_added_mass` behind a test, which is inlined so that steady rolling costs
-    nothing else.  The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4
-    there), at infinity.
-
-    law : :class:`.law_record.Law` of the material: polynomials of each octave; ``N_rows`` is empty
-        for steady rolling, where nothing else is read.
-    V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
-    kappa : float, slenderness R/l0, dimensionless, > 0.
-    gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
-    Returns (gamma N, its slope over V, its integral over V), floats, dimensionless; (0.0, 0.0, 0.0)
-    for steady rolling.  The slope is odd in V; at V = 0.0 it is that of V > 0.  The integral is
-    continuous at V = 0, and odd in V where it begins there.  Of a cover that has ``N_rows`` all
-    three are NaN in its rows; beyond the last row they mean nothing.
-    """
-    return (
-        _evaluate_added_mass(law, V, kappa, gamma)
-        if unlikely(law.N_rows.size > 0)
-        else (0.0, 0.0, 0.0)
-    )
-
-
 @kernel
 def unsteady_loop(law, kappa, V, out):
     """Write N of n states into an array.
@@ -167,14 +137,6 @@ def unsteady_loop(law, kappa, V, out):
 
 
 # --- The contact law at a state of a motion ---
-
-#: Rule of Gauss and Legendre on [0, 1]: places and weights of four points, exact to degree 7.
-_GAUSS = (
-    (0.06943184420297371, 0.17392742256872679),
-    (0.33000947820757187, 0.3260725774312732),
-    (0.6699905217924281, 0.3260725774312732),
-    (0.9305681557970262, 0.17392742256872679),
-)
 
 
 class SpeedFunctions(NamedTuple):
@@ -257,19 +219,7 @@ def _change_of(Q, pairs, L, dL, scene):
     pairs, L, dL: fields of :class:`SpeedFunctions`.
     scene: Scene, of which ``law`` and, of a cover, kappa and mu are read; of half-spaces all is 0.
     """
-    return _change_of_cover(Q, pairs, L, dL, scene, by_value(scene.law).cover_rows)
-
-
-@inline_kernel
-def _change_of_cover(Q, pairs, L, dL, scene, cover_rows):
-    """Return what :func:`_change_of` does.
-
-    Q: float, traction, dimensionless.
-    pairs, L, dL: fields of :class:`SpeedFunctions`, not read for half-spaces.
-    scene: Scene, of which kappa and mu are read, of a cover alone.
-    cover_rows: those of the law, None of half-spaces, by whose type numba compiles one of the two
-    branches.
-    """
+    cover_rows = by_value(scene.law).cover_rows
     if cover_rows is None:
         return MomentChange(
             half_space=0.0,
@@ -365,25 +315,10 @@ def asymmetry(pairs, L, dL, ddL, scene):
 
 
 @inline_kernel
-def _asymmetry_at_speed(V, scene):
-    """Return the asymmetry c at a speed V of either sign, a float."""
+def asymmetry_at_speed(V, scene):
+    """Return the asymmetry c at a speed V of either sign, a float; V = 0: the limit."""
     functions, pairs = _lengths_and_pairs(scene.kappa * abs(V), scene)
     return asymmetry(pairs, functions.L, functions.dL, functions.ddL, scene).value
-
-
-@inline_kernel
-def asymmetry_at_rest(scene):
-    """Return the asymmetry c in the limit V -> 0, a float."""
-    return _asymmetry_at_speed(0.0, scene)
-
-
-@inline_kernel
-def creep_at_rest(d, scene):
-    """Return the :class:`.cover_law.CreepCurve` in the limit V -> 0 at d, of either sign.
-
-    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
-    """
-    return creep_of(d, asymmetry_at_rest(scene), by_value(scene.law).cover_rows)
 
 
 @inline_kernel
@@ -409,217 +344,32 @@ def rest_limits(scene, sigma=1.0):
     return width.L, 0.5 / scene.kappa * width.middle
 
 
-@kernel
-def low_speed_feedback(work):
-    """Return force and torque of the feedback divided by V in the limit V -> 0 of free rolling,
-    omega = V (1 + delta_0), dimensionless; positive where they drive, 0 without feedback.
-
-    work: Workspace, of the motion; its Scene and the gains of its feedback are read, not its force
-    and torque over time.
-    """
-    gains = work.drive.gains
-    omega_over_V = 1.0 + rest_limits(work.scene)[1]
-    force = gains.force_V + gains.force_omega * omega_over_V
-    return force, gains.torque_V + gains.torque_omega * omega_over_V
-
-
-class FreeDecay(NamedTuple):
-    """Exponential decay of V in slow free rolling, V' = -rate V, dimensionless.
-
-    rate : its rate per unit of tau, below 0 where the feedback drives.
-    Q : traction divided by V.
-    creep : creepage less delta_0, divided by V.
-    """
-
-    rate: float
-    Q: float
-    creep: float
-
-
-@inline_kernel
-def _slow_law(sigma, scene):
-    """Return the :class:`.table_law.SlowLaw` of a scene.
-
-    sigma: float, side of d, 1.0 or -1.0, on which that of a table depends.
-    scene: Scene, of which ``law`` and, of a cover or a table, kappa and mu are read.
-    """
-    # Q_V = 0, as on rows Q is 0 at d = 0; creep_V = 0, as the change of delta_0 with V is left out
-    functions = evaluate_moments(0.0, scene)
-    reaction = reaction_at_rest(scene)
-    rows = SlowLaw(
-        half_space=functions.half_space,
-        cylinder=functions.cylinder,
-        reaction_half_space=reaction.half_space,
-        reaction_cylinder=reaction.cylinder,
-        creep_V=0.0,
-        creep_Q=rest_limits(scene)[0] / (4.0 * scene.kappa),  # Q = 2 mu d for small d
-        Q_V=0.0,
-    )
-    return slow_law_of_table(sigma, scene.kappa, scene.mu, rows, by_value(scene.law).table)
-
-
-@inline_kernel
-def _decay_on_side(sigma, work):
-    """Return (:class:`FreeDecay`, whether d lies on the side sigma, a bool) by the law of this
-    side; the formulas are those of :func:`free_decay`.
-
-    sigma: float, side of d, 1.0 or -1.0, on which the law of a table depends.
-    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
-    """
-    scene = work.scene
-    slow = _slow_law(sigma, scene)
-    force, torque = low_speed_feedback(work)
-    spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
-    on_axis = 1.0 + slow.reaction_half_space
-    on_spin = 1.0 - slow.reaction_cylinder
-    n = added_inertia(0.0, scene)[0]  # 0 of covers
-    inertia = on_spin + spin_inertia * on_axis + n
-    if on_axis == 1.0 and on_spin == 1.0:  # half-spaces: the same sum, in another order
-        rate = (slow.half_space + slow.cylinder - force - torque) / inertia
-    else:
-        axis_loss = on_spin * (slow.half_space - force)
-        rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
-    Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
-    Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
-    # Q_V is Q/V at d = 0, so that Q above it means d > 0; at equality both sides serve
-    decay = FreeDecay(rate=rate, Q=Q, creep=slow.creep_V + slow.creep_Q * Q)
-    return decay, sigma * (Q - slow.Q_V) >= 0.0
-
-
-@kernel
-def free_decay(work):
-    """Return the decay of V where nothing but resistance and feedback acts, as :class:`FreeDecay`,
-    in the limit V -> 0.
-
-    With a_b and a_c, the factors of Q by which shear acts back on M
-    (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage without creep force,
-    V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c) Q - M_cylinder, with
-    moments without traction and feedback f and q in proportion to V.  Q is eliminated: with a = 1 +
-    a_b, b = 1 - a_c and J = j (1 + delta_0)
-
-        (b + a J) V' = -b (M_half_space - f) - a (M_cylinder - q)
-        (b + a J) Q = J (M_half_space - f) - M_cylinder + q
-
-    Added mass of half-spaces, half of n V' in either moment, adds n to the factor of V', and n/2 to
-    J and to the factor 1 of M_cylinder - q in the second line.  A law by a table has
-    slopes over d on each side of d = 0; those of the side on which d lies are taken.
-
-    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
-    """
-    decay, consistent = _decay_on_side(1.0, work)
-    return decay if consistent else _decay_on_side(-1.0, work)[0]
-
-
-@inline_kernel
-def _leverage(used, scene):
-    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments
-    that it makes included.
-
-    With the factors a and excesses e of base and cylinder (:class:`.cover_law.Reaction`), V'
-    contains Q (1 + a_b + e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c |Q|/mu).
-
-    used: float, |Q|/mu, in [0, 1].
-    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
-    Returns (the factor on the axis, that on the cylinder, derivatives in Q of Q times each),
-    floats, dimensionless; all are 1 of half-spaces.
-    """
-    if by_value(scene.law).cover_rows is None:
-        return 1.0, 1.0, 1.0, 1.0
-    reaction = reaction_at_rest(scene)
-    on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
-    on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
-    # Q (a + e |Q|/mu) has the derivative a + 2 e |Q|/mu in Q: once more the term of the excess
-    return (
-        on_axis,
-        on_spin,
-        on_axis + reaction.half_space_excess * used,
-        on_spin - reaction.cylinder_excess * used,
-    )
-
-
 @inline_kernel
 def pull_at_rest(d, scene):
     """Return what friction does at V = 0: force on the axis, torque against the spin, and their
     derivatives in d.
 
+    With the factors a and excesses e of base and cylinder (:class:`.cover_law.Reaction`), 0 of
+    half-spaces, V' contains Q (1 + a_b + e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c
+    |Q|/mu): the moments that the traction makes are included.
+
     d: float, in [-1, 1].
     scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
     Returns (force, torque, derivative of the force, derivative of the torque), floats,
-    dimensionless: Q and Q of half-spaces; of a cover Q times the factors of :func:`_leverage`; of a
-    table Q - M_half_space and Q + M_cylinder.
+    dimensionless: Q and Q of half-spaces; of a cover Q times these factors; of a table Q -
+    M_half_space and Q + M_cylinder.
     """
     used = abs(d) * (2.0 - abs(d))  # |Q|/mu
     Q = scene.mu * d * (2.0 - abs(d))
     dQ_dd = 2.0 * scene.mu * (1.0 - abs(d))
-    on_axis, on_spin, axis_dQ, spin_dQ = _leverage(used, scene)
+    reaction = reaction_at_rest(scene)
+    on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
+    on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
+    # Q (a + e |Q|/mu) has the derivative a + 2 e |Q|/mu in Q: once more the term of the excess
+    axis_dQ = on_axis + reaction.half_space_excess * used
+    spin_dQ = on_spin - reaction.cylinder_excess * used
     rows = Q * on_axis, Q * on_spin, axis_dQ * dQ_dd, spin_dQ * dQ_dd
     return pull_of_table(d, scene.kappa, scene.mu, rows, by_value(scene.law).table)
-
-
-@kernel
-def speeds_after_sliding(V, omega, scene):
-    """Return V and omega of the free rolling in which undriven sliding at the least speeds ends,
-    dimensionless.
-
-    It ends within a time of the order of the speeds, in which nothing but the traction acts: a Q on
-    the axis and b Q on the cylinder, functions of d (:func:`pull_at_rest`), Q and Q of half-spaces.
-    In full slip, |d| = 1, V b + j omega a is constant.  From |d| = 1 to 0, d(ln V)/dy = -a/(b/j + a
-    y) with y = omega/V, a function of d, which has the rule of Gauss with four points.
-
-    V, omega : floats, of either sign, not both 0.
-    scene : Scene, of which ``law``, kappa, mu and j are read; of a table one with
-        :func:`.table_law.sticks_at_rest`.
-    """
-    law = by_value(scene.law)
-    free = 1.0 + rest_limits(scene)[1]  # omega/V of free rolling
-    j = scene.j
-    if law.cover_rows is None and law.table is None:
-        V = (V + j * omega) / (1.0 + j * free)
-        return V, V * free
-    c = asymmetry_at_rest(scene)
-    # Sign of the creepage less delta_0; a product of the two least speeds would underflow to 0.
-    side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0
-    limit = _limit_at_rest(side, scene)  # |delta - delta_0| at d = side without c d^2
-    left = np.inf  # |d| at which the integral over d begins; above 1 in full slip
-    if V != 0.0:
-        left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
-    if left == 0.0:
-        return V, omega
-    if left > 1.0:  # Full slip: V b + j omega a is kept until omega/V is that of |d| = 1.
-        left = 1.0
-        on_axis, on_spin, _, _ = pull_at_rest(side, scene)
-        # what is kept, with the signs of Q on the axis and on the cylinder, which are those of
-        # ``side`` in pull_at_rest
-        kept = side * (V * on_spin + j * omega * on_axis)
-        # the side in the end: ``kept`` has the sign of V there, omega - free V keeps its own
-        turned = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
-        # V passes through 0, from where on a and b are those of the other side.  There j omega a is
-        # all of what is kept: it changes with a, as omega stays.
-        if turned != side:
-            kept /= abs(on_axis)
-            on_axis, on_spin, _, _ = pull_at_rest(turned, scene)
-            kept *= abs(on_axis)
-            side = turned
-            limit = _limit_at_rest(side, scene)
-        # V b + j omega a with omega/V at |d| = 1, where d + c d^2 = side + c
-        V = kept / (abs(on_spin) + j * abs(on_axis) * (free + limit * (side + c)))
-    for place, weight in _GAUSS:
-        d = side * left * place
-        on_axis, on_spin, _, _ = pull_at_rest(d, scene)
-        creep = creep_of(d, c, law.cover_rows)
-        y = free + limit * creep.value
-        dy = side * limit * creep.slope  # slope of y over |d|
-        # |d| falls from ``left`` to 0, which turns the sign of -a/(b/j + a y).
-        V *= np.exp(left * weight * dy * on_axis / (on_spin / j + on_axis * y))
-    return V, V * free
-
-
-@inline_kernel
-def _limit_at_rest(side, scene):
-    """Return |delta - delta_0| at the onset of full slip in the limit V -> 0, a float > 0; of a
-    table that of one side, 1.0 or -1.0.
-    """
-    return 0.5 * rest_limits(scene, side)[0] * scene.mu / scene.kappa
 
 
 @inline_kernel
@@ -655,17 +405,20 @@ def critical_creepage(V, sigma, scene):
     sigma: float, sign of the slip, 1.0 or -1.0, on which that of a cover depends.
     scene: Scene, of which kappa, mu and ``law`` are read.
     """
-    onset = _creep_over_L(V, sigma, scene)
+    onset = creep_over_L(V, sigma, scene).value
     return 0.5 * scene.mu / scene.kappa * _width(V, sigma, scene).L * abs(onset)
 
 
 @inline_kernel
-def _creep_over_L(V, d, scene):
-    """Return (delta - delta_0)/delta_star at a speed V and d, both of either sign; d of
-    half-spaces.
+def creep_over_L(V, d, scene):
+    """Return the :class:`.cover_law.CreepCurve` at a speed V and d, both of either sign; V = 0: the
+    limit.
+
+    Its value is (delta - delta_0)/delta_star; d of half-spaces.
+
+    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
     """
-    cover_rows = by_value(scene.law).cover_rows
-    return creep_of(d, _asymmetry_at_speed(V, scene), cover_rows).value
+    return creep_of(d, asymmetry_at_speed(V, scene), by_value(scene.law).cover_rows)
 
 
 @inline_kernel
@@ -677,12 +430,9 @@ def reduced_slip(slip, limit, V, sigma, scene):
     V, sigma: floats, speed of the axis, and 1.0 or -1.0.
     scene: Scene, of which kappa, mu and ``law`` are read.
     """
-    part = slip / limit
-    if by_value(scene.law).cover_rows is None:
-        return part
     # limit is delta_star |V| (1 + sigma c): from here on the excess is divided by delta_star |V|
-    c = _asymmetry_at_speed(V, scene)
-    return reduced_creep(part * (1.0 + sigma * c), c)
+    c = asymmetry_at_speed(V, scene)
+    return reduced_creep(slip / limit * (1.0 + sigma * c), c)
 
 
 @inline_kernel
@@ -697,7 +447,7 @@ def creepage(V, d, scene):
     """
     # the side of d, which L of a table depends on; d = -0.0 is on the side -1, where the term is 0
     width = _width(V, np.copysign(1.0, d), scene)
-    creep = _creep_over_L(V, d, scene)
+    creep = creep_over_L(V, d, scene).value
     return 0.5 * scene.mu / scene.kappa * width.L * creep + 0.5 / scene.kappa * width.middle
 
 
@@ -729,7 +479,11 @@ def added_inertia(V, scene):
     of V > 0.  The integral begins at V = 0, but at infinity where n <= -4 at V = 0, as V = 0 is not
     reached then.
     """
-    return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
+    law = by_value(scene.law)
+    # behind this test, which is inlined, so that steady rolling costs nothing else
+    if unlikely(law.N_rows.size > 0):
+        return _evaluate_added_mass(law, V, scene.kappa, scene.gamma)
+    return 0.0, 0.0, 0.0
 
 
 @inline_kernel

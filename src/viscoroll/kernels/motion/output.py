@@ -25,8 +25,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..numerics.intrinsics import by_value
@@ -39,6 +37,7 @@ from ..records import (
     StepState,
 )
 from .collocation import (
+    INTEGRAL_MATRIX,
     N_RECORDED,
     N_SWITCHES,
     QUADRATURE_TOTALS,
@@ -51,9 +50,9 @@ from .collocation import (
     N,
     dense_position,
     dense_state,
-    evaluate_integral,
-    fit_integral,
+    evaluate_dense_output,
     last_output_tau,
+    multiply_matrix,
 )
 from .drive import evaluate_load, load_at_node
 from .motion_law import omega_and_delta, slip_power
@@ -263,16 +262,21 @@ def write_due_outputs(state, regime, step_state, work):
 @inline_kernel
 def _quadrature_at(n, v, step, nodes):
     """Return the increase of a quadrature from the left end of a step to a position, a float,
-    dimensionless.
+    dimensionless; accurate relative to itself as v -> 0.
+
+    With t in [-1, 1] on the step and v = 1 + t the integral over t from the left end is
+
+        v (value at node 0 + v (c_0 + c_1 t + ... + c_(N-1) t^(N-1)))
 
     n: int, index of the quadrature, as of :func:`write_quadrature`.
     v: float, position in [0, 2]; at 0 the result is 0.
     step: Step, the accepted one, whose length is read.
-    nodes: Workspace.nodes, with the integrand at node 0 and the coefficients of its integral
-    (:func:`fit_integral`).
+    nodes: Workspace.nodes, with the integrand at node 0 and the coefficients c of its integral, the
+    product of INTEGRAL_MATRIX and the integrand.
     """
     first = nodes[ROW_INTEGRANDS + ROW_LENGTH * n]
-    return 0.5 * step.h * evaluate_integral(v, first, nodes, ROW_DENSE_QUADRATURES + ROW_LENGTH * n)
+    inner = evaluate_dense_output(v, nodes, ROW_DENSE_QUADRATURES + ROW_LENGTH * n)
+    return 0.5 * step.h * (v * (first + inner))
 
 
 @inline_kernel
@@ -318,25 +322,6 @@ def _evaluate_integrands(regime, work):
 
 
 @kernel
-def _integral_over_step(row, step, nodes):
-    """Return the integral over tau of a row along a whole step, by Radau quadrature; a float,
-    dimensionless.
-
-    Its N nodes are 1 ... N: the value at node 0 is not read.  Unlike :func:`_quadrature_at` it
-    needs no interpolant.
-
-    row: int, index in ``nodes`` of the value at node 0 of a row, such as an integrand's
-    (ROW_INTEGRANDS ...).
-    step: Step, the accepted one, whose length is read.
-    nodes: Workspace.nodes.
-    """
-    total = 0.0
-    for i in range(N):
-        total += QUADRATURE_WEIGHTS[i] * nodes[row + i + 1]
-    return 0.5 * step.h * total
-
-
-@inline_kernel
 def accept_step(end, v, step, regime, step_state, work):
     """Accept a step up to a position on it: write the outputs before its end and add up the
     quadratures.
@@ -359,6 +344,7 @@ def accept_step(end, v, step, regime, step_state, work):
     accepted step more; the number of trial steps, the segment and the length of the next step stay.
     """
     tau = work.output_tau
+    nodes = work.nodes
     column = step_state.next_output
     is_last = end == last_output_tau(work)
     # Whether an output is written now; only then, or at an end inside the step, are integrals
@@ -370,15 +356,15 @@ def accept_step(end, v, step, regime, step_state, work):
         _evaluate_integrands(regime, work)
     if due or v < 2.0:
         for n in range(n_quadratures):
-            fit_integral(
-                ROW_INTEGRANDS + ROW_LENGTH * n, ROW_DENSE_QUADRATURES + ROW_LENGTH * n, work.nodes
-            )
+            row = ROW_INTEGRANDS + ROW_LENGTH * n
+            dense = ROW_DENSE_QUADRATURES + ROW_LENGTH * n
+            multiply_matrix(INTEGRAL_MATRIX, row, nodes[row], nodes, dense, nodes)
     while column < tau.size and (tau[column] < end or is_last):
         v_output = min(dense_position(tau[column], step), 2.0)  # 2 may be passed by rounding.
-        _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
+        _write_state(column, dense_state(v_output, nodes), step.segment, regime, work)
         # those that are not computed, as nothing drives, keep their totals
         for n in range(N_QUADRATURES if work.with_quadratures else 0):
-            increase = _quadrature_at(n, v_output, step, work.nodes) if n < n_quadratures else 0.0
+            increase = _quadrature_at(n, v_output, step, nodes) if n < n_quadratures else 0.0
             write_quadrature(column, n, increase, work)
         column += 1
     if step_state.n_accepted < work.step_ends.size:
@@ -386,10 +372,12 @@ def accept_step(end, v, step, regime, step_state, work):
     # up to v by the interpolant; along the whole step by Radau's rule, which is of higher order
     for n in range(n_quadratures):
         if v < 2.0:
-            work.nodes[QUADRATURE_TOTALS + n] += _quadrature_at(n, v, step, work.nodes)
-        else:
-            row = ROW_INTEGRANDS + ROW_LENGTH * n
-            work.nodes[QUADRATURE_TOTALS + n] += _integral_over_step(row, step, work.nodes)
+            nodes[QUADRATURE_TOTALS + n] += _quadrature_at(n, v, step, nodes)
+        else:  # Radau quadrature of a whole step, which needs no interpolant.
+            total = 0.0
+            for i in range(N):
+                total += QUADRATURE_WEIGHTS[i] * nodes[ROW_INTEGRANDS + ROW_LENGTH * n + i + 1]
+            nodes[QUADRATURE_TOTALS + n] += 0.5 * step.h * total
     return StepState(
         tau=end,
         next_output=column,

@@ -19,8 +19,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..numerics.jit import inline_kernel, kernel
@@ -44,8 +42,9 @@ from .collocation import (
     set_step_length,
     shorten_step,
 )
-from .drive import drive_rounding, is_constant, is_undriven, is_unloaded, segment_end
+from .drive import drive_rounding, evaluate_load, is_constant, is_undriven, is_unloaded, segment_end
 from .events import (
+    EXTRAPOLATION_END,
     NOT_FOUND,
     ends_at_event,
     evaluate_event_functions,
@@ -62,7 +61,6 @@ from .step_control import (
     first_step_length,
     next_step_length,
     step_length_after_relaxation,
-    time_to_V_zero,
 )
 
 #: Largest number of successive rejections: as each shortens the step to 0.7 or 0.4 of its length at
@@ -134,7 +132,11 @@ def _start_step(state, regime, step_state, work):
 def _end_at_V_zero(step, remaining, state, regime, work):
     """Shorten a trial step to the time at which V is expected to be 0, if that lies on it.
 
-    A prescribed V that comes to 0 at the end of the segment, or after it, needs no shorter step.
+    At V = 0 the law has a kink, which no step may contain.  V is expected to be 0 after V/|V'| at
+    the initial V', and nowhere if V does not decrease.  In partial slip V comes to 0 only against
+    the drive: nowhere too if nothing drives, and if the prescribed slopes or, where they are 0,
+    force plus torque without feedback do not act against V.  A prescribed V that comes to 0 at the
+    end of the segment, or after it, needs no shorter step.
 
     step: Step, the trial step; ``tau``, ``h``, ``segment`` and ``undriven`` are read.
     remaining: float, time in tau to the end of the segment.
@@ -142,10 +144,18 @@ def _end_at_V_zero(step, remaining, state, regime, work):
     regime: Regime, at that state; full_slip, direction and locked are read.
     work: Workspace, with V' at node 0; the Drive and j are read too.
     Returns (Step, whether it ends at the expected time of V = 0, a bool); the Step is unchanged
-    where that time is after its end, or inf, and then the second is False; at V = 0 with V' < 0 its
-    length is 0.
+    where that time is after its end, or V' is NaN, and then the second is False; at V = 0 with
+    V' < 0 its length is 0.
     """
-    time = time_to_V_zero(step, state, regime, work)
+    V_rate = work.nodes[ROW_V_RATE]
+    if not V_rate < 0.0 or (step.undriven and not regime.full_slip):  # True for NaN too.
+        return step, False
+    if not regime.full_slip:
+        load = evaluate_load(step.tau, step.segment, regime, work)
+        driving = load.prescribed_V_rate + load.prescribed_omega_rate  # at most one is not 0
+        if driving > 0.0 or (driving == 0.0 and load.force + load.torque >= 0.0):
+            return step, False
+    time = -state.V / V_rate
     if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
         return step, False
     # the second says ``time <= step.h`` of the length before
@@ -261,7 +271,7 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
             # An earlier trial crossed the event, or the step was aimed at V = 0, and this one ends
             # before it: the function is extrapolated.  If it has no zero near, the step counts as
             # one without an event, with its own error, and a later step meets the event.
-            v = locate_zero(event, 0, nodes)
+            v = locate_zero(event, 2.0, EXTRAPOLATION_END, nodes)
             if v >= NOT_FOUND:
                 return NO_EVENT, 2.0, step, error, dense_step
         h = min(step.h * 0.5 * v, upper)

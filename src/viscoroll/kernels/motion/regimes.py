@@ -20,11 +20,11 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
-from ..numerics.jit import kernel
+from ..law.cover_law import creep_of, reduced_creep
+from ..numerics.intrinsics import by_value
+from ..numerics.jit import inline_kernel, kernel
 from ..records import (
     AT_REST,
     FULL_SLIP,
@@ -38,7 +38,14 @@ from ..records import (
 )
 from .collocation import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip, row_range
 from .drive import current_load, has_brake, is_undriven, prescribed_speed
-from .motion_law import critical_creepage, excess_slip, reduced_slip, speeds_after_sliding
+from .motion_law import (
+    asymmetry_at_speed,
+    critical_creepage,
+    excess_slip,
+    pull_at_rest,
+    reduced_slip,
+    rest_limits,
+)
 from .rhs import applied_forces, current_rates
 
 #: V at the event divided by V at the left end of the step, below which V is 0, as rounding leaves
@@ -56,26 +63,13 @@ ZERO_V_RATIO = 1e-150
 #: Distance of a start from the edge of the stick zone, relative to the speeds, that is rounding:
 #: about a hundred units.
 _START_ON_EDGE = 2e-14
-
-
-@kernel
-def _torque_at_locked_wheel(state, regime, step_state, work):
-    """Return the torque that would accelerate the cylinder at omega = 0, and the largest torque of
-    the brake against it.
-
-    state: State, with omega = 0.
-    regime: Regime, at that state; all fields are read.
-    step_state: StepState, with the time and its segment.
-    work: Workspace, of which Scene and Drive are read.
-    Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q
-    and M_cylinder, signed, in the direction of the regime; the largest torque of the brake at that
-    time, at least 0, and 0 where no brake acts.  In partial slip M_cylinder contains n V'/2 of the
-    added mass, with V' of the present regime.
-    """
-    load = current_load(regime, step_state, work)
-    rates = current_rates(state, regime, step_state, work)
-    _, torque, _ = applied_forces(state.V, 0.0, load, regime)
-    return torque - rates.Q - rates.M_cylinder, load.brake
+#: Rule of Gauss and Legendre on [0, 1]: places and weights of four points, exact to degree 7.
+_GAUSS = (
+    (0.06943184420297371, 0.17392742256872679),
+    (0.33000947820757187, 0.3260725774312732),
+    (0.6699905217924281, 0.3260725774312732),
+    (0.9305681557970262, 0.17392742256872679),
+)
 
 
 @kernel
@@ -97,37 +91,29 @@ def change_brake(regime, spin_sign, locked):
 
 
 @kernel
-def brake_holds_omega(state, regime, step_state, work):
-    """Return whether the brake can hold omega at 0 against the torque that would accelerate the
-    cylinder; a bool.
+def brake_at_zero_omega(may_hold, state, regime, step_state, work):
+    """Return the Regime at omega = 0 in which the brake holds omega, or lets it go.
 
-    It can if the modulus of that torque (:func:`_torque_at_locked_wheel`) is at most the largest
-    torque of the brake; without a brake, only if it is exactly 0.
+    The torque that would accelerate the cylinder at omega = 0 is that of the motor with its
+    feedback, less Q and M_cylinder; in partial slip M_cylinder contains n V'/2 of the added mass,
+    with V' of ``regime``.  The brake can hold omega if the modulus of this torque is at most the
+    largest torque of the brake; without a brake, only if it is exactly 0.
 
+    may_hold: bool, whether the brake may hold omega; False: it lets go in any case.
     state: State, with omega = 0.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
+    Returns ``regime`` with another state of its brake: ``locked`` True where the brake holds omega;
+    else False, with the sign of the torque as ``spin_sign`` (1, -1, or 0 for no torque) where the
+    segment has a brake anywhere on it, and with 0 where it has none.
     """
-    # equal torques hold: without a brake, limit = 0, a torque of exactly 0 does
-    torque, limit = _torque_at_locked_wheel(state, regime, step_state, work)
-    return abs(torque) <= limit
-
-
-@kernel
-def release_brake(state, regime, step_state, work):
-    """Return the Regime after a brake has released the cylinder, or after omega has changed its
-    sign under it.
-
-    state: State, with omega = 0.
-    regime: Regime, the one before; all fields are read.
-    step_state: StepState, with the time and its segment.
-    work: Workspace, of which Scene and Drive are read.
-    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the
-    torque of :func:`_torque_at_locked_wheel` that accelerates the cylinder from omega = 0 (1, -1,
-    or 0 for no torque) where the segment has a brake anywhere on it, to 0 where it has none.
-    """
-    torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
+    load = current_load(regime, step_state, work)
+    rates = current_rates(state, regime, step_state, work)
+    torque = applied_forces(state.V, 0.0, load, regime)[1] - rates.Q - rates.M_cylinder
+    # equal torques hold: without a brake, whose limit is 0, a torque of exactly 0 does
+    if may_hold and abs(torque) <= load.brake:
+        return change_brake(regime, regime.spin_sign, True)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
     return change_brake(regime, spin_sign, False)
 
@@ -241,8 +227,8 @@ def apply_event(event, state, regime, step_state, work):
       0, omega changes its sign, and the direction is reversed.
     - OMEGA_ZERO: omega is set to 0 in full slip, V and d stay in partial slip; then the brake holds
       omega, ``locked`` is True, or ``spin_sign`` becomes the sign of the torque that accelerates it
-      (:func:`release_brake`).
-    - BRAKE_RELEASE: the brake lets go, :func:`release_brake`.
+      (:func:`brake_at_zero_omega`).
+    - BRAKE_RELEASE: the brake lets go, :func:`brake_at_zero_omega`.
 
     BELOW_REST_SPEED does not occur here: it ends the motion.
 
@@ -281,13 +267,11 @@ def apply_event(event, state, regime, step_state, work):
         if not full_slip or state.omega_or_d == 0.0:
             return False, state, regime
         return True, State(0.0, -state.omega_or_d), reverse_direction(regime)
-    if event == OMEGA_ZERO:
+    if event == OMEGA_ZERO and full_slip:
         # exactly 0, which the located event is to rounding; in partial slip omega is no unknown
-        still = State(state.V, 0.0) if full_slip else state
-        if brake_holds_omega(still, regime, step_state, work):
-            return True, still, change_brake(regime, regime.spin_sign, True)
-        return True, still, release_brake(still, regime, step_state, work)
-    return True, state, release_brake(state, regime, step_state, work)
+        state = State(state.V, 0.0)
+    may_hold = event == OMEGA_ZERO  # else BRAKE_RELEASE
+    return True, state, brake_at_zero_omega(may_hold, state, regime, step_state, work)
 
 
 @kernel
@@ -323,10 +307,74 @@ def enter_segment(state, regime, step_state, work):
     omega = current_rates(state, regime, step_state, work).omega
     # a locked omega is 0 but for rounding in partial slip, where it follows from V and d
     if regime.locked or omega == 0.0:
-        if braked and brake_holds_omega(state, regime, step_state, work):
-            return state, change_brake(regime, regime.spin_sign, True)
-        return state, release_brake(state, regime, step_state, work)
+        return state, brake_at_zero_omega(braked, state, regime, step_state, work)
     return state, change_brake(regime, np.sign(omega) if braked else 0.0, False)
+
+
+@kernel
+def speeds_after_sliding(V, omega, scene):
+    """Return V and omega of the free rolling in which undriven sliding at the least speeds ends,
+    dimensionless.
+
+    It ends within a time of the order of the speeds, in which nothing but the traction acts: a Q on
+    the axis and b Q on the cylinder, functions of d (:func:`pull_at_rest`), Q and Q of half-spaces.
+    In full slip, |d| = 1, V b + j omega a is constant.  From |d| = 1 to 0, d(ln V)/dy = -a/(b/j + a
+    y) with y = omega/V, a function of d, which has the rule of Gauss with four points.
+
+    V, omega : floats, of either sign, not both 0.
+    scene : Scene, of which ``law``, kappa, mu and j are read; of a table one with
+        :func:`.table_law.sticks_at_rest`.
+    """
+    law = by_value(scene.law)
+    free = 1.0 + rest_limits(scene)[1]  # omega/V of free rolling
+    j = scene.j
+    if law.cover_rows is None and law.table is None:
+        V = (V + j * omega) / (1.0 + j * free)
+        return V, V * free
+    c = asymmetry_at_speed(0.0, scene)
+    # Sign of the creepage less delta_0; a product of the two least speeds would underflow to 0.
+    side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0
+    limit = _limit_at_rest(side, scene)  # |delta - delta_0| at d = side without c d^2
+    left = np.inf  # |d| at which the integral over d begins; above 1 in full slip
+    if V != 0.0:
+        left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
+    if left == 0.0:
+        return V, omega
+    if left > 1.0:  # Full slip: V b + j omega a is kept until omega/V is that of |d| = 1.
+        left = 1.0
+        on_axis, on_spin, _, _ = pull_at_rest(side, scene)
+        # what is kept, with the signs of Q on the axis and on the cylinder, which are those of
+        # ``side`` in pull_at_rest
+        kept = side * (V * on_spin + j * omega * on_axis)
+        # the side in the end: ``kept`` has the sign of V there, omega - free V keeps its own
+        turned = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
+        # V passes through 0, from where on a and b are those of the other side.  There j omega a is
+        # all of what is kept: it changes with a, as omega stays.
+        if turned != side:
+            kept /= abs(on_axis)
+            on_axis, on_spin, _, _ = pull_at_rest(turned, scene)
+            kept *= abs(on_axis)
+            side = turned
+            limit = _limit_at_rest(side, scene)
+        # V b + j omega a with omega/V at |d| = 1, where d + c d^2 = side + c
+        V = kept / (abs(on_spin) + j * abs(on_axis) * (free + limit * (side + c)))
+    for place, weight in _GAUSS:
+        d = side * left * place
+        on_axis, on_spin, _, _ = pull_at_rest(d, scene)
+        creep = creep_of(d, c, law.cover_rows)
+        y = free + limit * creep.value
+        dy = side * limit * creep.slope  # slope of y over |d|
+        # |d| falls from ``left`` to 0, which turns the sign of -a/(b/j + a y).
+        V *= np.exp(left * weight * dy * on_axis / (on_spin / j + on_axis * y))
+    return V, V * free
+
+
+@inline_kernel
+def _limit_at_rest(side, scene):
+    """Return |delta - delta_0| at the onset of full slip in the limit V -> 0, a float > 0; of a
+    table that of one side, 1.0 or -1.0.
+    """
+    return 0.5 * rest_limits(scene, side)[0] * scene.mu / scene.kappa
 
 
 @kernel
@@ -340,7 +388,7 @@ def initial_regime(V, omega, step_state, work):
     would fall from there, else full slip.  From V = 0 it is full slip.
 
     If nothing drives and both speeds are below 1e-150, they are replaced first by those of the free
-    rolling in which sliding ends (:func:`.motion_law.speeds_after_sliding`).
+    rolling in which sliding ends (:func:`speeds_after_sliding`).
 
     V, omega: float, initial speeds of either sign, dimensionless.
     step_state: StepState, at the start.

@@ -50,18 +50,14 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
-from ..law.cover_law import creep_turn, free_kinematics, reduced_kinematics
+from ..law.cover_law import creep_of, free_kinematics
 from ..law.law_functions import H_over_F2, H_over_F2_secants, locate_row
 from ..numerics.intrinsics import by_value, unlikely
 from ..numerics.jit import inline_kernel, kernel
-from ..records import State
-from .collocation import ROW_OMEGA_OR_D, ROW_V
-from .drive import current_load, load_at_node
+from .drive import current_load
 from .motion_law import added_inertia, asymmetry, evaluate_moments, loaded_moments
 from .table_law import Width, free_creep_of_table, table_state, width_at
 
@@ -71,6 +67,73 @@ _STRONG_FRICTION = 0.8
 #: |d| below which Q is evaluated by mean slopes of the law: 1 - w^2 H, about 2 |d|, would have lost
 #: four digits there.
 _SMALL_D = 1e-4
+
+
+class ReducedKinematics(NamedTuple):
+    """Terms with d in the kinematics of partial slip at one speed, dimensionless; A = d(u L)/du.
+
+    With S = L (d + c d^2), delta = delta_0 + k S, k = mu/(2 kappa).
+
+    value : S/L.
+    width, dwidth, turn : dS/dd, and its derivatives over u and d.
+    total, total_dd : d(u S)/du divided by A, and its derivative in d.
+    bend : d^2(u S)/du^2.
+    """
+
+    value: float
+    width: float
+    dwidth: float
+    turn: float
+    total: float
+    total_dd: float
+    bend: float
+
+
+@inline_kernel
+def reduced_kinematics(d, u, L, dL, ddL, asymmetry, cover_rows):
+    """Return the :class:`ReducedKinematics` of partial slip at d.
+
+    d : float, of either sign, dimensionless.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u.
+    asymmetry : :class:`OverSpeed` of c at u; not read for half-spaces.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    """
+    uL_slope = L + u * dL  # A
+    uL_curvature = 2.0 * dL + u * ddL  # its derivative over u
+    if cover_rows is None:  # S = L d
+        return ReducedKinematics(d, L, dL, 0.0, d, 1.0, uL_curvature * d)
+    c = asymmetry
+    creep = creep_of(d, c.value, cover_rows)
+    # d(u S)/du = A (d + c d^2) + u L c' d^2, divided by A; ``bend``, not divided, is its derivative
+    # over u, A' (d + c d^2) + (2 A c' + u L c'') d^2.  d^2 is ``creep.bend``, 2 d ``bend_slope``.
+    aside = u * c.slope * L / uL_slope
+    return ReducedKinematics(
+        value=creep.value,
+        width=L * creep.slope,
+        dwidth=dL * creep.slope + L * c.slope * creep.bend_slope,
+        turn=L * creep.curvature,
+        total=creep.value + aside * creep.bend,
+        total_dd=creep.slope + aside * creep.bend_slope,
+        bend=uL_curvature * creep.value
+        + creep.bend * (2.0 * c.slope * uL_slope + u * c.curvature * L),
+    )
+
+
+@inline_kernel
+def creep_turn(creep, rate, cover_rows):
+    """Return what d^2 in the creepage adds to the slope of V d' in d, times dS/dd, a float; -0.0 of
+    half-spaces, which a compiler leaves out of sums.
+
+    The equation of d has dS/dd V d' on its left side: its derivative in d contains d^2S/dd^2 V d'.
+
+    creep : :class:`ReducedKinematics` at d, of which ``turn``, d^2S/dd^2, is read.
+    rate : float, V d', dimensionless.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces.
+    """
+    return -0.0 if cover_rows is None else -creep.turn * rate
 
 
 class Rates(NamedTuple):
@@ -463,20 +526,3 @@ def current_rates(state, regime, step_state, work):
     work: Workspace, of the motion; its Scene and Drive are read.
     """
     return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
-
-
-@kernel
-def rhs_and_forces_at_node(i, regime, work):
-    """Evaluate the right-hand side and the forces that act at a node of a step.
-
-    i: int, the node, 0 ... N.
-    regime: Regime, that of the step; all fields are read.
-    work: Workspace, with V, the second unknown and the four functions of the drive
-    (:func:`.drive.store_drive`) at the node; Scene and Drive are read too.
-    Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the
-    direction of the regime, as :func:`required_forces` returns them.
-    """
-    state = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i])
-    load = load_at_node(i, regime, work)
-    rates = evaluate_rhs(state, load, regime, work.scene)
-    return rates, required_forces(state.V, rates.omega, rates, load, regime, work.scene.j)

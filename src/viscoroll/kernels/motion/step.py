@@ -41,8 +41,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 - Rates: the right-hand side at a State and its derivatives (:mod:`rhs`).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..numerics.intrinsics import by_value
@@ -286,7 +284,8 @@ def store_rhs(i, rates, nodes):
     """
     nodes[ROW_P_RATE + i] = rates.p_rate
     nodes[ROW_WEIGHTED_RATE + i] = rates.weighted_rate
-    nodes[ROW_P + i], nodes[ROW_SPEED + i] = rates.p, max(abs(nodes[ROW_V + i]), abs(rates.omega))
+    nodes[ROW_P + i] = rates.p
+    nodes[ROW_SPEED + i] = max(abs(nodes[ROW_V + i]), abs(rates.omega))
 
 
 @inline_kernel

@@ -23,8 +23,6 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..law.law_record import ALPHA, E0
@@ -95,57 +93,27 @@ _D_WEIGHT_FLOOR = 0.04
 
 
 @inline_kernel
-def _d_weight(d):
-    """Return the weight of an error of d, dimensionless: 1 at d = 0, 1/6 at |d| = 0.2, 0.96
-    at |d| = 1.
-
-    d acts on the motion through omega - V and V', whose error is that of V, and its errors decay.
-    An error of d is measured by the critical creepage, as an error of Q/mu, and less strictly
-    relative to d itself.
-
-    d: float, delta/delta_star, |d| <= 1; the weight is then in [1/6, 1].
-    """
-    return max(_D_WEIGHT_FLOOR, d * d) / (abs(d) + _D_WEIGHT_FLOOR)
-
-
-@kernel
-def _rounding_scale_of_V(step, work):
-    """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's
-    iteration.
-
-    V' = Q - M + f, traction less rolling moment plus force, may be a small difference of Q and f.
-    Its rounding changes V during the step, or during the relaxation time of V if that is shorter.
-    It is used under a drive without feedback of omega on V'.
-
-    step: Step, the trial step; ``h`` is read.
-    work: Workspace, with the force and the Newton diagonal of p at the last node, mu and rtol.
-    Returns a float above 0, dimensionless.
-    """
-    nodes = work.nodes
-    # rounding of V', |Q| = mu and the force, the first row of the drive, times half the length; the
-    # diagonal is dV'/dV times half the length, so that the sum takes the shorter of both times
-    V_error = ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h
-    V_error /= 1.0 + abs(nodes[ROW_P_DIAGONAL + N])
-    return V_error / max(NEWTON_FRACTION * ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
-
-
-@inline_kernel
 def error_scales(step, regime, work):
     """Return the scales by which errors of V and of the second unknown on a step are divided.
 
     In full slip an error of omega is divided by the largest of |V| and |omega| on the step.  An
-    error of V is divided by the largest |V| of the step, and under a drive at least by the V that
-    rounding leaves (:func:`_rounding_scale_of_V`); where a feedback of omega acts on V', it is
-    divided by the largest speed as that of omega.
+    error of V is divided by the largest |V| of the step, and under a drive at least by the V below
+    which rounding of V' exceeds the tolerance of Newton's iteration; where a feedback of omega acts
+    on V', it is divided by the largest speed as that of omega.  V' = Q - M + f, traction less
+    rolling moment plus force, may be a small difference of Q and f.  Its rounding changes V during
+    the step, or during the relaxation time of V if that is shorter.
 
     In partial slip an error of V is divided by the largest speed.  An error of d is multiplied by
-    its weight (:func:`_d_weight` at the last node), or by the relative change of the speed that a
-    unit of d causes if that is larger.
+    its weight at the last node, or by the relative change of the speed that a unit of d causes if
+    that is larger.  The weight is 1 at d = 0, 1/6 at |d| = 0.2, 0.96 at |d| = 1: d acts on the
+    motion through omega - V and V', whose error is that of V, and its errors decay.  An error of d
+    is measured by the critical creepage, as an error of Q/mu, and less strictly relative to d
+    itself.
 
     step: Step, the trial step; ``h`` and ``undriven`` are read.
     regime: Regime, that of the step; ``full_slip`` is read.
-    work: Workspace, with V and the larger speeds at its nodes; in partial slip also with d at the
-    last one and with the derivatives of p.
+    work: Workspace, with V and the larger speeds at its nodes, the force and the Newton diagonal of
+    p at the last one; in partial slip also with d at the last one and with the derivatives of p.
     Returns (scale of V, scale of the second unknown), floats, dimensionless.  A scale of a speed is
     0 where that speed is 0 at all nodes: the update or error that is divided by it is then inf or
     NaN, and the step is rejected.  A NaN at a node is passed over, but for d at the last node, with
@@ -166,13 +134,21 @@ def error_scales(step, regime, work):
             return largest_V, largest_speed
         if work.drive.gains.force_omega != 0.0:
             return largest_speed, largest_speed
-        return max(largest_V, _rounding_scale_of_V(step, work)), largest_speed
+        # rounding of V', |Q| = mu and the force, the first row of the drive, times half the length;
+        # the diagonal is dV'/dV times half the length, so that the sum takes the shorter of both
+        # times
+        V_error = ROUNDING * (work.scene.mu + abs(nodes[ROW_DRIVE + N])) * 0.5 * step.h
+        V_error /= 1.0 + abs(nodes[ROW_P_DIAGONAL + N])
+        stop = max(NEWTON_FRACTION * ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)
+        return max(largest_V, V_error / stop), largest_speed
     # An error of d is an error of omega, and at given p an error of V.
     for i in range(1, N + 1):
         V_change = max(V_change, abs(nodes[ROW_DP_DD + i] * nodes[ROW_DV_DP + i]))
     # change of omega by a unit of d, about delta_star V = (mu/(2 kappa)) V, or of V at given p
     V_change = max(V_change, 0.5 * work.scene.mu / work.scene.kappa * largest_V) / largest_speed
-    return largest_speed, 1.0 / max(_d_weight(nodes[ROW_OMEGA_OR_D + N]), V_change)
+    d = nodes[ROW_OMEGA_OR_D + N]
+    weight = max(_D_WEIGHT_FLOOR, d * d) / (abs(d) + _D_WEIGHT_FLOOR)
+    return largest_speed, 1.0 / max(weight, V_change)
 
 
 @inline_kernel
@@ -198,26 +174,6 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     for i in range(N):
         defect -= EXTRAPOLATION_TO_START[i] * nodes[slope_row + i + 1]
     return 2.0 * abs(defect)
-
-
-@inline_kernel
-def _variation_of_p_rate(half, nodes):
-    """Return the largest difference of p' between nodes 1 ... N, times half the length of the step;
-    a float >= 0 in the unit of p.
-
-    It tells :func:`estimate_error` by how much p' varies on the step, beside which a defect counts
-    as small or not.
-
-    half: float, half the length of the step in tau.
-    nodes: Workspace.nodes, with p' at nodes 1 ... N; one that is NaN is passed over unless it is at
-    node 1.
-    """
-    # the nodes at which the equations are met
-    smallest = largest = nodes[ROW_P_RATE + 1]
-    for i in range(2, N + 1):
-        smallest = min(smallest, nodes[ROW_P_RATE + i])
-        largest = max(largest, nodes[ROW_P_RATE + i])
-    return half * (largest - smallest)
 
 
 @kernel
@@ -249,24 +205,6 @@ def _relative_speed_at_first_output(step, work):
         if smallest == 0.0 or node_time(step, i) <= output_time:
             smallest = abs(nodes[ROW_V + i])
     return smallest / largest if largest > 0.0 else 1.0
-
-
-@kernel
-def _strong_friction_rounding(regime, work):
-    """Return the rounding error of a defect of V' under strong friction, per unit of tau,
-    dimensionless; 0 elsewhere.
-
-    V' may be a small difference of Q and f, so that 30 units of rounding of mu are left in it.
-    Friction is strong (:func:`has_strong_friction`) only where mu > kappa, so that other scenes
-    need not ask.
-
-    regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``locked`` are read.
-    work: Workspace, with Scene and Drive, and the drive at node 0, of which only the inverse mass
-    and inertia matter.
-    Returns a float: 6.6e-15 mu under strong friction in partial slip with sigma < 0, else 0.0.
-    """
-    strong = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
-    return _STRONG_FRICTION_ROUNDING * work.scene.mu if strong else 0.0
 
 
 @inline_kernel
@@ -305,9 +243,16 @@ def estimate_error(step, regime, work):
     # Friction is strong only where k = mu/(2 kappa) > 0.8 (1 + 1/j) or, with omega given, > 0.8:
     # mu > kappa is necessary, and cheap to test.
     if unlikely(work.scene.mu > work.scene.kappa):
-        error = max(error - _strong_friction_rounding(regime, work) * step.h, 0.0)
+        # V' may be a small difference of Q and f, in which 30 units of rounding of mu are left.
+        if has_strong_friction(load_at_node(0, regime, work), regime, work.scene):
+            error = max(error - _STRONG_FRICTION_ROUNDING * work.scene.mu * step.h, 0.0)
     error *= dV_dp  # From here on an error of V; ``variation`` too.
-    variation = _variation_of_p_rate(half_h, nodes) * dV_dp + work.options.rtol * scale_V
+    # by how much p' varies between the nodes at which the equations are met
+    smallest = largest = nodes[ROW_P_RATE + 1]
+    for i in range(2, N + 1):
+        smallest = min(smallest, nodes[ROW_P_RATE + i])
+        largest = max(largest, nodes[ROW_P_RATE + i])
+    variation = half_h * (largest - smallest) * dV_dp + work.options.rtol * scale_V
     # The result is multiplied by _DEFECT_FACTOR < 1.  This factor, between 1 and its inverse, takes
     # the reduction back in proportion to the defect relative to the variation.
     error *= min(max(_UNRESOLVED_DEFECT * error / variation, 1.0), 1.0 / _DEFECT_FACTOR)
@@ -483,36 +428,6 @@ def first_step_length(stick_formed, step_state, regime, work):
         # away.
         return min(h, _ONSET_CHANGE * d_scale * V / max(rate, 1e-300), V / (4.0 * feedback))
     return min(h, _FIRST_CHANGE * V / V_rate) if V_rate > 0.0 else h
-
-
-@inline_kernel
-def time_to_V_zero(step, state, regime, work):
-    """Return the time in tau until V = 0 at the initial V', which is V/|V'|; inf if V does not
-    decrease.
-
-    At V = 0 the law has a kink, which no step may contain.  In partial slip V comes to 0 only
-    against the drive: there the result is inf too if nothing drives, and if the prescribed slopes
-    or, where they are 0, force plus torque without feedback do not act against V.
-
-    step: Step, the trial step; tau, segment and undriven are read.
-    state: State, at its left end; V is read.
-    regime: Regime, that of the step; full_slip, direction and locked are read.
-    work: Workspace, with V' at node 0; the Drive and j are read too.
-    Returns a float, at least 0; 0 at V = 0 if V' < 0 and, in partial slip, the drive acts against
-    V; inf for a V' of NaN.
-    """
-    V_rate = work.nodes[ROW_V_RATE]
-    if not V_rate < 0.0:  # True for NaN too.
-        return np.inf
-    if regime.full_slip:
-        return -state.V / V_rate
-    if step.undriven:
-        return np.inf
-    load = evaluate_load(step.tau, step.segment, regime, work)
-    driving = load.prescribed_V_rate + load.prescribed_omega_rate  # one of them at most is not 0
-    if driving > 0.0 or (driving == 0.0 and load.force + load.torque >= 0.0):
-        return np.inf
-    return -state.V / V_rate
 
 
 @inline_kernel
