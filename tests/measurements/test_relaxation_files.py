@@ -73,7 +73,7 @@ def test_relaxation_is_read(text, tmp_path):
         ),
         (
             "Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n",
-            ["temperatures from 20 to 40 °C: keep the rows of one"],
+            ["at 20 to 40 °C: keep the rows of one"],
         ),
         (
             "Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n",

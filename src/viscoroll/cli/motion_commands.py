@@ -569,7 +569,7 @@ def _figure_of_netcdf(path: str) -> Any:
     except (AttributeError, KeyError, ValueError) as error:
         raise vr.FileError(
             path,
-            "is an incomplete result, a variable or attribute is missing: write it again",
+            "lacks a variable or an attribute of a result: write the result again",
         ) from error
 
 

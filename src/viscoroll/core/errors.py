@@ -101,10 +101,6 @@ _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
 )
 
 
-#: Characters of a value that a message shows: most of a line.
-_SHOWN = 60
-
-
 def describe_value(value: Any) -> str:
     """Return a value for a message: its text in one line of at most 60 characters, the last three
     "..." where it is longer, and its type in parentheses.
@@ -115,7 +111,7 @@ def describe_value(value: Any) -> str:
     objects "... (of type NAME)".
     """
     text = " ".join(repr(value).split())
-    text = text if len(text) <= _SHOWN else f"{text:.57}..."
+    text = f"{text:.57}..." if text[60:] else text
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
         return text
     kind = next((words for types, words in _TYPE_NAMES if isinstance(value, types)), "")

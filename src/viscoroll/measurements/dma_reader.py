@@ -167,8 +167,7 @@ def read_relaxation(
     elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise FileError(
             table.path,
-            f"has temperatures from {temperature.min():g} to {temperature.max():g} °C: keep the "
-            "rows of one",
+            f"is at {temperature.min():g} to {temperature.max():g} °C: keep the rows of one value",
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)

@@ -310,8 +310,7 @@ class _Layout:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
                 raise self.fault(
                     line,
-                    f"contains column names, but not as the numbers are cut: write {width} "
-                    f"names {self.cut}",
+                    f"contains column names: write {width} names, {self.cut} as the numbers are",
                 )
         names = [f"column {n}" for n in range(width)]
         lines[:first] = [lines[first]._replace(text=str(names), cells=names, numeric=False)]
