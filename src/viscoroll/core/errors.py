@@ -216,7 +216,7 @@ def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tu
     """
     try:
         names = (values,) if isinstance(values, str) else tuple(values)
-    except TypeError:  # not iterable
+    except (TypeError, KeyError):  # not iterable; a result is by names alone
         names = (values,)
     for value in names:
         if not (isinstance(value, str) and value in known):

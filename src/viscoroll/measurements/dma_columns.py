@@ -326,10 +326,9 @@ def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]
     except ParameterError:
         return problem
     if "angular" in name and unit.lower().endswith("hz"):
-        plain = name.replace("angular ", "")
         return (
-            f"an angular frequency is not in {unit}: write {plain!r} in its heading, or give "
-            f"units={{{name!r}: 'rad/s'}}"
+            f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
+            f"heading, or give units={{{name!r}: 'rad/s'}}"
         )
     # tan delta must not be in an angle and a phase angle must be, since pint converts the one to
     # the other; None of other quantities

@@ -139,9 +139,9 @@ def identify(
     >>> round(result.values["mu"], 6)
     0.3
     """
-    shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else shift or {}
+    shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else {} if shift is None else shift
     data = [data] if isinstance(data, Record) else data
-    prior = prior or {}
+    prior = {} if prior is None else prior
     for name, value, kind, allowed in (
         ("cylinder", cylinder, Cylinder, "a Cylinder"),
         ("unknown", unknown, Mapping, "{name: (low, high)}"),

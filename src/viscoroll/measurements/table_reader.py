@@ -439,11 +439,11 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     for start in starts:
         values = {*lines.get(start, {}).values()}
         if len(values) != 1 or np.isnan([*values]).any():
-            problem = (
-                "write one temperature of the rows from here on above this line, as 'Temperature "
-                "20 °C'"
+            raise FileError(
+                table.path,
+                f"line {numbers[start]}: write one temperature of the rows from here on above this "
+                "line, as 'Temperature 20 °C'",
             )
-            raise FileError(table.path, f"line {numbers[start]}: {problem}")
         temperature[start:] = values.pop()  # blocks below overwrite theirs
     return temperature
 
@@ -489,12 +489,12 @@ def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
             with suppress(FileError):
                 spread = factor * np.ptp(table.numbers(index).values)
             if factor and spread > SAME_TEMPERATURE:
-                problem = f"column {heading!r} looks like temperatures, which are not read"
-                advice = (
-                    f"name it by columns={{'temperature': {heading!r}}}, or remove it if it "
-                    "is not of the sample"
+                raise FileError(
+                    table.path,
+                    f"column {heading!r} looks like temperatures, which are not read: name it by "
+                    f"columns={{'temperature': {heading!r}}}, or remove it if it is not of the "
+                    "sample",
                 )
-                raise FileError(table.path, f"{problem}: {advice}")
 
 
 def _kelvins(unit: str) -> float:
