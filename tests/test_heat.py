@@ -109,10 +109,12 @@ def test_heat_of_slip_and_given_loads():
         assert np.abs(at_speed - theta).min() < 1e-7
 
 
-@pytest.mark.parametrize("base", [ROLLER.base, vr.Material.elastic(5e7, 0.3)])
+@pytest.mark.parametrize(
+    "base", [ROLLER.base, vr.Material.elastic(5e7, 0.3), vr.Material.elastic(3e6, 0.49)]
+)
 def test_vertical_shift_scales_the_moduli(base):
     """The equilibrium has the loss of the material whose moduli and times are those at its
-    temperature, also beside an elastic body and under a torque.
+    temperature, also beside an elastic body, of the rubber's long-time modulus too.
     """
     roller = with_shift(WLF, vertical_shift="entropic").replace(base=base)
     found = roller.temperature(3.0, **MILD)

@@ -494,8 +494,9 @@ def heat_states(
     if covered or driven is not None:
         refuse_arrays(roller, scene, ("alpha",))
     vertical = body.material.vertical_shift is not None
+    pair = roller.body_data.pair
     # the law keeps its shape beside a rigid body, of share 0 or 1 of the other, and of like bodies
-    remade = vertical and roller.body_data.pair.share not in (0.0, 0.5, 1.0)
+    remade = vertical and not pair.like and pair.share not in (0.0, 1.0)
     if vertical and (covered or (remade and driven is not None)):
         allowed = (
             "left out for a cover, and beside an elastic body where a load is given: the law would "
