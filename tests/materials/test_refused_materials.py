@@ -194,9 +194,9 @@ REFUSED = [
                 lambda: vr.fit_prony(*DMA).validity(ROLLER, 1.0),
                 lambda: vr.fit_prony(*DMA).validity(None, 1.0),
             ],
-            "V0 is not given, and no V= prescribes it": lambda: vr.Coastdown(
-                TIMES, sigma=0.1
-            ).model(roller(), {}),
+            "V0 = None: must be a finite number": lambda: vr.Coastdown(TIMES, sigma=0.1).model(
+                roller(), {}
+            ),
             "omega = 'x' (a text): must be a finite": lambda: vr.fit_prony(*DMA).modulus("x"),
         },
     ),
