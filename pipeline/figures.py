@@ -23,7 +23,7 @@ from viscoroll import ModelWarning, Scene
 from viscoroll.contact_mechanics.contact import contact
 from viscoroll.contact_mechanics.stress import stress
 from viscoroll.core.plots import LINES, THIN, axis_label, draw, new_figure, save
-from viscoroll.core.scale import SYMBOLS
+from viscoroll.core.quantities import SYMBOLS
 from viscoroll.motion.roll import roll
 from viscoroll.motion.summaries import drawn_summary
 from viscoroll.presets import PAPER_FIGURES_2_3, PAPER_SECTION_5, PAPER_STARTS, RUBBER_CYLINDER

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.core.files import write_dataset
-from viscoroll.core.scale import attributes
+from viscoroll.core.quantities import attributes
 
 from . import stage
 from .validation import FIELDS

@@ -12,7 +12,7 @@ import pytest
 from refusals import refused
 from test_quantities import CALLS, CYLINDER, arguments_of, parameters
 
-from viscoroll.core.scale import SYMBOLS
+from viscoroll.core.quantities import SYMBOLS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 POSITIVE = """R m T_epsilon T_sigma load g T_ref density thickness other_thickness energy C1 C2 low

@@ -27,7 +27,7 @@ from experiments import ranges, roller, thrown
 import viscoroll as vr
 from viscoroll.contact_mechanics.free_rolling import FreeRolling
 from viscoroll.contact_mechanics.validity import Steadiness
-from viscoroll.core.scale import Scale
+from viscoroll.core.quantities import Scale
 
 pytestmark = pytest.mark.usefixtures("here")
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from viscoroll.core.scale import DIMENSIONS, SYMBOLS, describe_quantity, si_unit
+from viscoroll.core.quantities import DIMENSIONS, SYMBOLS, describe_quantity, si_unit
 
 from ...stage import Row
 from ..results import Results, rows_of, table

@@ -1,7 +1,7 @@
 """Foundations of all layers: errors, checks, units, results and their labels, files, figures.
 
 Arguments enter through :mod:`.arrays` and :mod:`.quantities`, which give float64 in the unit of the
-argument or raise an exception of :mod:`.errors`.  :mod:`.scale` has the unit and the symbol of
+argument or raise an exception of :mod:`.errors`; :mod:`.quantities` has the unit and the symbol of
 every quantity.  Results leave through :mod:`.results`, :mod:`.drives_and_labels` and :mod:`.plots`,
 files through :mod:`.files`; :mod:`.arrays` also divides arrays among threads.
 

@@ -25,8 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError, describe_value
-from .quantities import has_no_unit, is_real, to_unit
-from .scale import Units
+from .quantities import Units, has_no_unit, is_real, to_unit
 
 # --- Types of arrays, and of the numbers that callers may give, for type checkers ---
 

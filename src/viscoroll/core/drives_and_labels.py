@@ -16,8 +16,7 @@ import numpy as np
 
 from .arrays import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
 from .errors import ParameterError, described_error, shape_error
-from .quantities import UNITLESS_TYPES, convert, has_no_unit, split_unit, to_unit
-from .scale import HasUnits, Scale
+from .quantities import UNITLESS_TYPES, HasUnits, Scale, convert, has_no_unit, split_unit, to_unit
 
 # --- Functions of time that act on motions ---
 

@@ -137,6 +137,23 @@ def digits_beside(value: Any, *others: Any) -> str:
     )
 
 
+def unit_error(name: str, unit: str, target: str, known: bool = True) -> ParameterError:
+    """Return the ParameterError, not raised, of an argument in a unit that cannot be converted.
+
+    name: name of the argument.
+    unit: unit that was found, of which 40 characters are quoted.
+    target: unit of the argument, "1" of a dimensionless number.
+    known: whether pint knows the unit; if not, the message says so.
+    """
+    allowed = (
+        "a number without dimension"
+        if target == "1"
+        else f"in {target}, or in another unit of that dimension"
+    )
+    found = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
+    return ParameterError(name, found, allowed, f"{name} is {found}: must be {allowed}")
+
+
 def described_error(name: str, found: str, allowed: str) -> ParameterError:
     """Return the error, not raised, of a parameter that a property describes better than its value.
 

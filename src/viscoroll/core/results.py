@@ -14,8 +14,13 @@ import numpy as np
 from .arrays import NDArray
 from .drives_and_labels import Labels, dataset_axes, state_axes
 from .files import DataFrame, Dataset, Figure, FilePath
-from .scale import attributes
+from .quantities import attributes
 
+#: Source of the model, an attribute of datasets.
+PAPER = (
+    "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic "
+    "half-space, Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
+)
 #: Rows of a summary in a notebook: more do not fit a screen.
 _MAX_ROWS = 40
 

@@ -255,7 +255,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
     """Make a variable of a grid, with long_name, units, symbol, range, equation and reference as
     attributes.
 
-    name: name of the quantity, a key of ``core.scale.SYMBOLS``.
+    name: name of the quantity, a key of ``core.quantities.SYMBOLS``.
     dims: names of the axes of the variable.
     values: array of its values, over ``dims``.
     si: whether the values are in SI units, else dimensionless; the range of Q is then that of "mu

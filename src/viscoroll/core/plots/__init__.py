@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import NDArray
 from ..errors import FileError, ParameterError
 from ..files import DataArray, Dataset, Figure, FilePath, as_path, replace_file
-from ..scale import MEASURED, SYMBOLS
+from ..quantities import MEASURED, SYMBOLS
 
 # --- Common parts of all figures ---
 
