@@ -93,7 +93,9 @@ ROLLS = each(
             "V": lambda t: float(t > 0.3),
             "t": 8.0,
         },
-        "drive has values for 3 motions": {"torque": vr.Feedback(0.01, omega=[0.0, -0.1, 0.1])},
+        "roll computes one motion, but a load or a gain has shape (3,): use ensemble": {
+            "torque": vr.Feedback(0.01, omega=[0.0, -0.1, 0.1])
+        },
         "torque must be a function of t alone, but this function has the parameters (t, V, w): for "
         "feedback": {"torque": lambda t, V, w: -V},
         "thickness is given | leave rested out": {"roller": COVERED, "rested": True},
@@ -107,7 +109,7 @@ BOTH_KINDS = {
     "needs the scene's gamma": {"roller": PAPER.replace(gamma=None), "unsteady": True},
     "rested = -1.0: must be finite and >= 0": UNSTEADY | {"rested": -1.0},
     "one time >= 0, or True": UNSTEADY | {"rested": [1.0, 2.0]},
-    "it starts in full slip": UNSTEADY | {"omega0": 0.0, "rested": True},
+    "the cylinder starts in full slip": UNSTEADY | {"omega0": 0.0, "rested": True},
     "a speed is prescribed": UNSTEADY | {"omega0": None, "omega": 30.0, "rested": True},
 }
 MOTIONS = [*each(vr.roll, BOTH_KINDS, **ROLL), *each(vr.ensemble, BOTH_KINDS, **ROLL)]
@@ -115,7 +117,7 @@ ENSEMBLES = each(
     vr.ensemble,
     {
         "V0 or omega0 has shape (1, 2): must be a number or a vector (n,)": {"V0": [[1.0, 2.0]]},
-        "V0 = [1.0, 1.0]: must be None, or 2, the prescribed speed at t = 0": {"V": 2.0},
+        "V0 = 1: must be None, or 2, the prescribed V at t = 0": {"V": 2.0},
         "V0 (2,), omega0 (3,) do not fit": {"omega0": [1.0, 2.0, 3.0]},
         "V is empty: must be": {"V0": None, "V": []},
         "coordinates": {"V0": LABELLED, "omega0": LABELLED.assign_coords(run=["a", "c"])},
@@ -126,8 +128,13 @@ DRIVES = each(vr.Schedule, {"shapes of a Schedule = times (), values ()": (0.0, 
 IN_SI = each(
     PAPER_CYLINDER.roll,
     {
-        "omega jumps at t = 0.0934579: must be continuous, as it is a prescribed speed | "
-        "(dimensionless: times divided by 10.7 s": {"omega": vr.Schedule([1.0, 1.0], [0.0, 1.0])},
+        "omega jumps at t = 1 s: must be continuous, as it is a prescribed speed": {
+            "omega": vr.Schedule([1.0, 1.0], [0.0, 1.0])
+        },
+        "resolve = 1e-09 s: must be at least 2e-06 s: at most 500000 samples up to t = 1 s": {
+            "torque": math.sin,
+            "resolve": 1e-9,
+        },
     },
     V0=0.0,
     omega0=0.0,
@@ -193,6 +200,7 @@ SAMPLES = each(
     {
         "give seed or rng": {"seed": None},
         "design: 'grid' is not a design; choose from random, latin, sobol": {"design": "grid"},
+        "rng = -1: must be a Generator of numpy": {"seed": None, "rng": -1},
     },
     n=4,
     seed=0,
@@ -233,6 +241,10 @@ OTHERS = each(
         "quantiles = 0.5: must be a list of numbers": lambda: vr.ensemble(**FREE).summary(
             quantiles=0.5
         ),
+        "run = 'run.toml' (a text): must be a Run, as runs.read_run(path) returns it": [
+            lambda: vr.runs.run_ensemble("run.toml", "s.zarr"),
+            lambda: vr.runs.estimate("run.toml"),
+        ],
     },
 )
 

@@ -110,7 +110,16 @@ REFUSED = [
                 file("omega [rad/s], E' [Pa], E'' [Pa], E' [Pa]\n1,2,3,4\n2,3,4,5\n"),
                 columns={"storage": "E' [Pa]"},
             ),
-            "dma.txt | line 2 has 2 columns": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
+            "column 'j' of none.nc: the file does not exist": lambda: run(
+                "a preset", "j = 0.4", 'j = { file = "none.nc", column = "j" }'
+            ),
+            "column 'j' of given.nc: the file has no 'j'": lambda: run(
+                "a preset", "j = 0.4", f'j = {{ file = "{netcdf(grid())}", column = "j" }}'
+            ),
+            "column 'j' of j.nc: the file is damaged, or no .nc file": lambda: run(
+                "a preset", "j = 0.4", f'j = {{ file = "{file("j", "j.nc")}", column = "j" }}'
+            ),
+            "dma.txt | line 2 has 2 cells": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
             "is the law of every alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"
             ),
@@ -197,6 +206,9 @@ REFUSED = [
                 lambda: vr.load_law(3),
                 lambda: PAPER.contact(V=[1.0, 2.0], delta=0.0).plot(3),
                 lambda: read_run(3),
+                lambda: vr.runs.verify(3),
+                lambda: vr.runs.open_run(3),
+                lambda: vr.datasets.copy_files(3),
             ],
             "cannot be read": lambda: read_roller("missing.toml"),
         },
@@ -284,8 +296,7 @@ REFUSED = [
                 "brake = 0.01",
                 'brake = { times = [{ distribution = "uniform" }, 0.5], values = [1.0, 2.0] }',
             ),
-            "file.toml: line 4: [start] V0 = 0.0: must be None, or 0.01, the prescribed speed "
-            "at t = 0": (
+            "file.toml: line 4: [start] V0 = 0: must be None, or 0.01, the prescribed V at t = 0": (
                 "driven",
                 "brake = 0.01",
                 "V = 0.01",
@@ -307,7 +318,7 @@ REFUSED = [
         measured,
         {
             "unknown key 'sigmma' | did you mean 'sigma' | line 23": ("sigma", "sigmma"),
-            "has no column 'moment' | force [N]": ("moment [N m/m]", "force [N]"),
+            "has no column 'moment'; its columns are | force": ("moment [N m/m]", "force [N]"),
             "[data.columns] unknown key 'Q' | V, M, F": (
                 'M = "moment"',
                 'M = "moment", Q = "moment"',

@@ -241,9 +241,8 @@ def make_roller(
     if "preset" in content:
         return preset(content["preset"]).replace(**given)
     # they are optional in the section, since a preset has them
-    for name in ("kappa", "mu"):
-        if name not in given:
-            raise ParameterError(name, None, "given", f"needs {name}")
+    if missing := [name for name in ("kappa", "mu") if name not in given]:
+        raise ParameterError(missing[0], None, "given", f"needs {' and '.join(missing)}")
     return Scene(**given)
 
 

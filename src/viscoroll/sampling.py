@@ -30,6 +30,7 @@ from .core import (
     check_integer,
     check_number,
     check_one_given,
+    describe_value,
     unknown_name_error,
 )
 
@@ -101,10 +102,10 @@ def sample(
     ------
     ParameterError
         Bad n, seed or design, both or neither of seed and rng, a quantity that is neither a number
-        nor a distribution, a distribution without a median, a draw that overflows.
-    TypeError, ValueError
-        Of numpy, for an ``rng`` that default_rng does not take; of scipy, for "sobol" of more than
-        21201 distributions.
+        nor a distribution, a distribution without a median, a draw that overflows, an ``rng``
+        that default_rng of numpy does not take.
+    ValueError
+        Of scipy, for "sobol" of more than 21201 distributions.
 
     Examples
     --------
@@ -123,7 +124,11 @@ def sample(
     """
     check_one_given(seed=seed, rng=rng)
     if seed is None:
-        seed = int(np.random.default_rng(rng).integers(2**63))
+        try:
+            seed = int(np.random.default_rng(rng).integers(2**63))
+        except (TypeError, ValueError):
+            allowed = "a Generator of numpy, or a seed of one"
+            raise ParameterError("rng", describe_value(rng), allowed) from None
     n = check_integer("n", n, 1, 10**12)
     seed = check_integer("seed", seed, 0, 2**63 - 1)
     if design not in get_args(Design):

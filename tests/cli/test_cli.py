@@ -314,7 +314,7 @@ REFUSED = {
     "NAME=HEADING, for example storage=Module 1",
     "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=HEADING",
     "material fit dma.csv --column temperature=E_loss": "column 'E_loss [MPa]': unit 'MPa' is "
-    "not a unit of temperature: give units={'temperature': ...}",
+    "not a unit of temperature: give units={'temperature': UNIT}, as 'degC'",
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",
     "tables law rubber.toml --alpha 1:2 -o law.nc": "material and alpha are both given",
     "tables law --alpha low:high -o law.nc": "'low:high' must be LOW:HIGH",
@@ -329,7 +329,7 @@ REFUSED = {
     "ensemble run.toml --cluster local": "--cluster = local: must be left out without -o",
     "ensemble run.toml --threads 0": "threads = 0: must be a whole number >= 1",
     "ensemble": "the following arguments are required: RUN.toml",
-    "plot half.nc -o b.png": "half.nc: is damaged or is not a netCDF file",
+    "plot half.nc -o b.png": "half.nc: is damaged or is not a netCDF-4 file",
 }
 #: and of what others show
 SHOWN = {

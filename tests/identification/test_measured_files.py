@@ -90,8 +90,8 @@ def test_words_say_what_a_column_is(here, headings, kind, name, value):
         ("t [s],omega [1/min]", "of turns or of radians"),
         ("t [s],Drehzahl [1/s]", "of turns or of radians"),
         ("t [s],rpm", "of turns or of radians"),
-        ("time [s],velocity [m/s],speed [km/h]", "both say V: name the one of V in columns ="),
-        ("t [s],u [m/s]", r"no column V or omega or x, but 'u \[m/s\]': if one of them is V, name"),
+        ("time [s],velocity [m/s],speed [km/h]", "both say V: name one"),
+        ("t [s],u [m/s]", r"no column V or omega or x, only 'u \[m/s\]': if one of these is V"),
     ],
 )
 def test_what_a_column_may_be_is_asked(here, headings, words):

@@ -159,7 +159,7 @@ REFUSED = [
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
             "(39,) | (40,)": lambda: vr.Resistance(HUMP, HUMP[:-1], sigma=0.1),
-            "V0 | a prediction needs it": lambda: fitted().predict(vr.Coastdown(TIMES, TIMES)),
+            "V0 of the record is not given": lambda: fitted().predict(vr.Coastdown(TIMES, TIMES)),
             "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
             "as it resists: reverse its sign": lambda: vr.Resistance(
                 HUMP, -resistance().M, sigma=0.01
@@ -190,9 +190,14 @@ REFUSED = [
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
             "resistance: V is empty: must be at least one number": lambda: vr.Resistance([], []),
-            "cylinder | has other materials: must be made with material() of this fit": lambda: (
-                vr.fit_prony(*DMA).validity(ROLLER, 1.0)
+            "cylinder has other materials: must be a Cylinder with material=": [
+                lambda: vr.fit_prony(*DMA).validity(ROLLER, 1.0),
+                lambda: vr.fit_prony(*DMA).validity(None, 1.0),
+            ],
+            "V0 = None: must be a finite number": lambda: vr.Coastdown(TIMES, sigma=0.1).model(
+                roller(), {}
             ),
+            "omega = 'x' (a text): must be a finite": lambda: vr.fit_prony(*DMA).modulus("x"),
         },
     ),
     *each(
@@ -201,7 +206,7 @@ REFUSED = [
         ),
         {
             "unknown | at least one name": {"unknown": {}},
-            "unknown E | (1e+06, 2e+06) | contains the initial guess, 3e+06": {
+            "unknown E | (1e+06, 2e+06) | the value with which the search starts, 3e+06": {
                 "unknown": {"E": (1e6, 2e6)}
             },
             "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
@@ -217,7 +222,7 @@ REFUSED = [
             "run: V0 | a number: the data do not determine it": {
                 "data": [vr.Coastdown(TIMES, sigma=0.1)]
             },
-            "temperature = 60.0 | given with a shift of the material": {
+            "temperature = 60.0 | given with shift={'material': ...}": {
                 "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
             },
             "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},
@@ -254,7 +259,7 @@ REFUSED = [
     *each(
         lambda **more: vr.read_dma(file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), **more),
         {
-            "columns = 'abc': must be a dict, quantity -> heading": {"columns": "abc"},
+            "columns = 'abc' (a text): must be a dict, as {'frequency'": {"columns": "abc"},
             "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
             "units | must be (frequency, moduli)": [
                 {"units": units} for units in (("MPa", "Hz"), "Hz", ("Hz", 1.0))
@@ -270,8 +275,8 @@ REFUSED = [
                 "loss": [DMA[2]],
                 "temperature": [0.0, 20.0],
             },
-            "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap "
-            "with their": {"temperature": [20.0, 0.0]},
+            "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap: "
+            "leave": {"temperature": [20.0, 0.0]},
             "temperature has shape (1,): must be one for each of the 2 curves": {
                 "temperature": [20.0]
             },
@@ -337,7 +342,7 @@ REFUSED = [
                 vr.DynamicModuli(*DMA),
                 5,
             ),
-            "storage and loss | given": (DMA[0], DMA[1]),
+            "storage or loss is not given": (DMA[0], DMA[1]),
         },
     ),
     *each(

@@ -140,19 +140,19 @@ CASES = {
     ),
     "a tan delta in per cent beside moduli": (
         "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 100*tan>\n",
-        "give its unit by units=",
+        "give units={'tan delta': UNIT}",
         give(units={"tan delta": "%"}),
     ),
     "a tan delta that is wrong": (
         "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 2*tan>\n",
-        "or remove one of the columns",
+        "or remove one of these columns",
         lambda text, *_: (re.sub(r"(?m);[^;]*$", "", text), {}),
     ),
     "a magnitude of few digits": (
         "f [Hz];E' [MPa];|E*| [MPa]\n1;3.0;3.0\n10;4.0;4.1\n",
-        "give tan delta too",
+        "add a column of tan delta",
         change("f [Hz]", "f [Hz]"),
-        "do not determine",
+        "differ too little",
     ),
     "logarithms": (
         "f,Storage,Loss\n<log(f); log(S); log(L)>\n",
@@ -180,7 +180,7 @@ CASES = {
     ),
     "headings and rows of other separators": (
         "f E' E''\n<f; S; L>\n",
-        "columns",
+        "cells separated by semicolons",
         change("f E' E''", "f;E';E''"),
     ),
 }

@@ -144,7 +144,9 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
         if Path(text).suffix.lower() not in suffixes:
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
         if not os.path.isdir(os.path.dirname(text) or "."):
-            raise ArgumentTypeError(f"{text!r} cannot be written: its folder does not exist")
+            raise ArgumentTypeError(
+                f"{text!r} cannot be written: its folder does not exist, make it first"
+            )
         if os.path.isdir(text) and not text.endswith(".zarr"):
             raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
         return Path(text)

@@ -559,7 +559,7 @@ def _figure_of_netcdf(path: str) -> Any:
         if not Path(path).is_file():
             raise vr.FileError(path, "the file does not exist") from error
         problem = (
-            "is damaged or is not a netCDF file"
+            "is damaged or is not a netCDF-4 file"
             if os.access(path, os.R_OK)
             else "cannot be read (Permission denied)"
         )
@@ -569,7 +569,7 @@ def _figure_of_netcdf(path: str) -> Any:
     except (AttributeError, KeyError, ValueError) as error:
         raise vr.FileError(
             path,
-            f"is an incomplete result: a variable that belongs to its axes is missing ({error})",
+            "lacks a variable or an attribute of a result: write the result again",
         ) from error
 
 

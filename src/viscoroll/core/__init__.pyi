@@ -47,7 +47,6 @@ from .errors import described_error as described_error
 from .errors import digits_beside as digits_beside
 from .errors import exactly_one_error as exactly_one_error
 from .errors import import_extra as import_extra
-from .errors import mark_dimensionless as mark_dimensionless
 from .errors import shape_error as shape_error
 from .errors import suggest_arguments as suggest_arguments
 from .errors import suggestion as suggestion

@@ -74,9 +74,9 @@ class ParameterError(ViscorollError, ValueError):
     alpha 0.5
     """
 
-    #: Whether the sentence states dimensionless numbers, to which a call with a cylinder adds its
-    #: scales.
-    is_dimensionless = False
+    #: Sentence with a place {} for each of its dimensionless numbers, their quantity, and their
+    #: values, which a call with a cylinder tells in SI units; () without.
+    dimensionless: tuple[Any, ...] = ()
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name = name
@@ -102,8 +102,8 @@ _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
 
 
 def describe_value(value: Any) -> str:
-    """Return a value for a message: its text in one line of at most 60 characters, and its type in
-    parentheses.
+    """Return a value for a message: its text in one line of at most 60 characters, the last three
+    "..." where it is longer, and its type in parentheses.
 
     value: what a caller gave, of any type.
     Returns a text as "'abc' (a text)", "[1, 2] (a list)", "<function ...> (a function)", or of an
@@ -162,14 +162,6 @@ def described_error(name: str, found: str, allowed: str) -> ParameterError:
     allowed: words that follow "must be".
     """
     return ParameterError(name, found, allowed, f"{name} {found}: must be {allowed}")
-
-
-def mark_dimensionless(error: ParameterError) -> ParameterError:
-    """Mark an error whose sentence states dimensionless numbers, which a cylinder was given in SI
-    units; return it.
-    """
-    error.is_dimensionless = True
-    return error
 
 
 def shape_error(name: str, shape: tuple[int, ...], allowed: str) -> ParameterError:
@@ -241,7 +233,7 @@ def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tu
     """
     try:
         names = (values,) if isinstance(values, str) else tuple(values)
-    except TypeError:  # not iterable
+    except (TypeError, KeyError):  # not iterable; a result is by names alone
         names = (values,)
     for value in names:
         if not (isinstance(value, str) and value in known):

@@ -64,8 +64,7 @@ def as_path(path: Any) -> Path:
 
 @contextmanager
 def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
-    """Raise an OSError of the body of the ``with`` as FileError, which gives the system's reason; a
-    context manager.
+    """Raise an OSError of the body of the ``with`` as FileError, with the system's reason.
 
     The message is "PATH: PROBLEM (REASON)REMEDY", and the OSError is its cause.  Other exceptions
     pass unchanged.  A path with a null character, of which Python raises ValueError, is refused
@@ -130,8 +129,7 @@ def replace_file(path: FilePath) -> Iterator[Path]:
 
 
 def _sync(path: Path) -> None:
-    """Write the file or folder at ``path`` from the buffers of the system to the disk; not a folder
-    of Windows.
+    """Write the file or folder at ``path`` from the buffers to the disk; not a folder of Windows.
 
     Raises OSError if the system cannot.
     """

@@ -489,8 +489,7 @@ def _is_quantity(value: Any) -> bool:
 
 
 def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
-    """Split the unit from the elements of a list; elements in other units than the first are
-    converted.
+    """Split the unit from the elements of a list, all converted to the unit of the first.
 
     name: name of the argument, for errors.
     values: the list or tuple, whose elements may be lists, quantities, numbers or anything else.
@@ -580,8 +579,7 @@ def _to_seconds(name: str, value: Any) -> Any:
     value: what a caller gave, of any type.
     Returns a float or an array of the shape of ``value``, without its labels, NaN for NaT; None if
     the value is no duration, and for lists and masked arrays of durations.
-    Raises ParameterError for a duration in months or years, whose length is not fixed, or without a
-    unit.
+    Raises ParameterError for a duration in months or years, or without a unit.
     """
     if isinstance(value, timedelta):  # that of pandas is one too, and has nanoseconds
         value = (

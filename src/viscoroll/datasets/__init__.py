@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike
 from pathlib import Path
 
-from ..core import FileError, ParameterError, as_file_error, write_bytes
+from ..core import FileError, ParameterError, as_file_error, as_path, write_bytes
 
 __all__ = ["copy_files", "path"]
 
@@ -73,7 +73,7 @@ def copy_files(folder: str | PathLike[str]) -> list[Path]:
     >>> vr.datasets.copy_files("samples")[0].name
     'dma.csv'
     """
-    content = {Path(folder) / name: (_FOLDER / name).read_bytes() for name in _names()}
+    content = {as_path(folder) / name: (_FOLDER / name).read_bytes() for name in _names()}
     with as_file_error(folder, "cannot be written"):
         Path(folder).mkdir(parents=True, exist_ok=True)
         present = {copy: copy.read_bytes() for copy in content if copy.exists()}

@@ -170,8 +170,7 @@ class Bodies(OneOrMany):
         pairs.
 
         Of two equal series it is that series, whatever the share is; else a series in creep form.
-        Raises ParameterError for a single pair of more than 64 modes, or times that span more than
-        32 decades.
+        Raises ParameterError for a pair of more than 64 modes, or times over more than 32 decades.
         """
         if not self._same:
             return Prony.creep(*self._creep[:2], alpha=self.alpha)
@@ -179,8 +178,7 @@ class Bodies(OneOrMany):
         return one if one.shape == self.shape else one.repeated(len(self))
 
     def body(self, name: str) -> tuple[Prony, Any, Any]:
-        """Return the series of one body of a single pair, its Poisson's ratio, and None: it is a
-        half-space.
+        """Return the series of one body of a pair, its Poisson's ratio, and None: a half-space.
 
         Parameters
         ----------
@@ -327,8 +325,7 @@ class Cover(Bodies):
     Raises
     ------
     ParameterError
-        A value out of range, a series of many materials; a cover that is too thin, where its law is
-        computed.
+        A value out of range, a series of many materials; where the law is computed, a thin cover.
 
     Examples
     --------

@@ -260,8 +260,7 @@ class Material(FromPrograms):
         return self.E / (2.0 * (1.0 + self.nu))
 
     def at(self, temperature: float, shift: Callable[[float], float] | None = None) -> Material:
-        """Return the material at another temperature: T_ref, and with it all times, is multiplied
-        by a_T.
+        """Return the material at another temperature: T_ref and all times are multiplied by a_T.
 
         The measured band moves with it.  E is multiplied by b_T of ``vertical_shift``, or stays;
         all other fields stay.

@@ -321,8 +321,7 @@ class ShiftFactors:
         return self._told(Arrhenius(energy=float(energy), T0=self.T0))
 
     def _points(self, fewest: int) -> tuple[Any, Any]:
-        """Return (temperature - T0, K; log10 a_T), (n,) each, of factors to which a law can be
-        fitted.
+        """Return (temperature - T0, K; log10 a_T), (n,) each, to which a law can be fitted.
 
         fewest: least number of temperatures.
         Raises ParameterError for fewer temperatures, and for factors that do not fall from the
@@ -465,8 +464,7 @@ class Measured:
     source : text that names the source of the data.
     M_error : accuracy of the rolling moment by the data: pairs (transit frequency of a contact,
         1/s, ascending; relative error of M as +-, dimensionless); fits give it, (): not known.
-    strain : amplitude of engineering strain of the test, dimensionless, > 0 (0.001 is 0.1 %); None:
-        it is not known.
+    strain : amplitude of engineering strain of the test, > 0 (0.001 is 0.1 %); None: not known.
 
     Raises
     ------

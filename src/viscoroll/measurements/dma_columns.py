@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import FileError, ParameterError, suggestion
+from ..core import FileError, ParameterError, describe_value, suggestion
 from ..materials import ABSOLUTE_ZERO
 from .text_cells import MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
 from .text_table import Table, find_column
@@ -291,7 +291,7 @@ def _index(table: Table, heading: str) -> int:
     found = find_column(table, heading)
     if found is None:
         allowed = f"one of {', '.join(map(repr, table.headings))}{suggestion(str(heading), table.headings)}"  # noqa: E501
-        raise ParameterError("columns", f"{heading!r:.60}", allowed)
+        raise ParameterError("columns", describe_value(heading), allowed)
     return found
 
 
@@ -318,15 +318,17 @@ def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]
     unit = meaning.unit
     if name in overruling or unit in NO_UNIT:
         return ""
-    problem = f"unit {unit!r} is not a unit of {name}: give units={{{name!r}: ...}}"
+    problem = (
+        f"unit {unit!r} is not a unit of {name}: give units={{{name!r}: UNIT}}, as {UNITS[name]!r}"
+    )
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
         return problem
     if "angular" in name and unit.lower().endswith("hz"):
-        plain = name.replace("angular ", "")
         return (
-            f"an angular frequency in {unit}: rename it {plain!r}, or give units={{{name!r}: ...}}"
+            f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
+            f"heading, or give units={{{name!r}: 'rad/s'}}"
         )
     # tan delta must not be in an angle and a phase angle must be, since pint converts the one to
     # the other; None of other quantities
@@ -359,7 +361,7 @@ def numbers_of(table: Table, column: Column) -> Numbers:
         raise FileError(
             table.path,
             f"column {column.heading!r} has no unit, and its largest value is {values.max():g}: "
-            f"give units={{{name!r}: ...}}",
+            f"give units={{{name!r}: UNIT}}, as {UNITS[name]!r}",
         )
     if column.log:
         values = column.log**values

@@ -143,11 +143,13 @@ def read_relaxation(
         raise missing(
             table,
             "relaxation",
-            "no column was found for time, or none for relaxation modulus, or stress and strain",
+            "no column was found for the relaxation modulus, nor for both stress and strain"
+            if "time" in alike
+            else "no column was found for time",
             others,
         )
     if len(table.starts) > 1:
-        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them")
+        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them in the file")
     used = [name for name in ("time", *pair, "temperature") if name in alike]
     others |= {
         each.heading: "not needed" for name in alike.keys() - {*used} for each in alike[name]
@@ -165,7 +167,7 @@ def read_relaxation(
     elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise FileError(
             table.path,
-            f"has temperatures from {temperature.min():g} to {temperature.max():g} °C: keep one",
+            f"is at {temperature.min():g} to {temperature.max():g} °C: keep the rows of one value",
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)
@@ -387,11 +389,10 @@ def _warn_of_per_cent(table: Table, taken: list[Column]) -> None:
         if column.name == "tan delta" and not column.stated and not column.log:
             most = numbers_of(table, column).values.max()
             if most > _MOST_DAMPED:
-                text = (
+                warn_of_model(
                     f"{table.path}: tan delta of up to {most:g} is no rubber's: give "
-                    f"units={{'tan delta': '%'}}"
+                    f"units={{'tan delta': '%'}} if it is in per cent, '1' if not"
                 )
-                warn_of_model(f"{text} if it is in per cent, '1' if not")
 
 
 def _choose_columns(
@@ -460,15 +461,16 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     n = record.omega.size
     # a single row may be one of a sweep that the user cut
     if n > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
-        problem = (
-            f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "
-            "frequency sweep"
-        )
-        raise FileError(table.path, problem)
-    if record.temperature is None and len(table.starts) > 1:
-        problem = f"has {len(table.starts)} tables, and no column states their temperature"
         raise FileError(
-            table.path, f"{problem}: keep one of them, or write 'Temperature 20 °C' above each"
+            table.path,
+            f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "
+            "frequency sweep; give a file with several frequencies",
+        )
+    if record.temperature is None and len(table.starts) > 1:
+        raise FileError(
+            table.path,
+            f"has {len(table.starts)} tables, and no column states their temperature: keep one of "
+            "them, or write 'Temperature 20 °C' above each",
         )
     if record.isothermal:
         refuse_repeats(table, "frequency", omega, record.storage)

@@ -553,8 +553,8 @@ class DynamicModuli(ModuliRecord):
         )
         if lost:
             warn_of_model(
-                f"{self.source}: three columns do not state {' and '.join(lost)}: give the record "
-                "itself, fit_prony(record)"
+                f"{self.source or 'record'}: omega, storage and loss alone do not state "
+                f"{' and '.join(lost)}: give fit_prony(record) the record itself"
             )
         return super().__iter__()
 

@@ -298,11 +298,12 @@ class SeriesFit(Result):
         >>> fit.validity(roller, [0.1, 1.0]).holds
         array([ True,  True])
         """
-        bodies = cylinder.pair.cylinder, cylinder.pair.half_space
+        pair = getattr(cylinder, "pair", None)
+        bodies = (pair.cylinder, pair.half_space) if pair else ()
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
             raise described_error(
-                "cylinder", "has other materials", "made with material() of this fit"
+                "cylinder", "has other materials", "a Cylinder with material=fit.material(nu=...)"
             )
         speed = check_array("V", V, unit="m s-1")
         lam = contact(
@@ -316,14 +317,17 @@ class SeriesFit(Result):
         """Return the moduli of the fit, in the unit of the data.
 
         x : angular frequencies, rad/s, or of a fit of relaxation times, s, > 0, of any shape;
-            neither sign nor unit is checked.
-        Returns shape (2, *x.shape), storage and loss, or (1, *x.shape), relaxation; NaN where x is
-        NaN.
+            perhaps with a unit; the sign is not checked.
+        Returns shape (2, *x.shape), storage and loss, or (1, *x.shape), relaxation.
+        Raises ParameterError for what is not numeric or not finite.
         """
-        points = np.asarray(x, np.float64)
+        name, *moduli = self.data._fields
+        points = check_array(name, x, unit=UNITS[name])
         # the spectrum reads omega or t of the data, not the moduli
-        data = self.data._replace(**{self.data._fields[0]: points.ravel()})
-        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
+        found = spectrum_of(self.prony, self.E, self.T_ref).modulus(
+            self.data._replace(**{name: points.ravel()})
+        )
+        return found.reshape(len(moduli), *points.shape)
 
     def to_xarray(self) -> Dataset:
         """Return the data, the fit and its series as a dataset.
@@ -464,12 +468,12 @@ class Fit(SeriesFit):
 
         Parameters
         ----------
-        omega : angular frequencies, rad/s, > 0, not checked, of any shape, also outside of the
+        omega : angular frequencies, rad/s, > 0, finite, of any shape, also outside of the
             data.
 
         Returns
         -------
-        storage, loss : the moduli, each of the shape of ``omega``; NaN where omega is NaN.
+        storage, loss : the moduli, each of the shape of ``omega``.
 
         Examples
         --------
@@ -520,12 +524,12 @@ class RelaxationFit(SeriesFit):
 
         Parameters
         ----------
-        t : times, s, > 0, not checked, of any shape, also outside of the data.
+        t : times, s, > 0, finite, of any shape, also outside of the data.
 
         Returns
         -------
         array
-            The modulus, of the shape of ``t``; NaN where t is NaN.
+            The modulus, of the shape of ``t``.
 
         Examples
         --------

@@ -190,7 +190,9 @@ def fit_prony(
                 )
         if mode not in (None, record.mode):
             raise ParameterError(
-                "mode", repr(mode), f"{record.mode!r}, the mode of {record.source or 'the data'}"
+                "mode",
+                repr(mode),
+                f"{record.mode!r}, the mode of {record.source or 'the data'}, or left out",
             )
         omega = record.omega
         storage = record.storage
@@ -199,8 +201,10 @@ def fit_prony(
         temperature = record.temperature if temperature is None else temperature
         source = source or record.source
     elif storage is None or loss is None:
-        raise ParameterError(
-            "storage and loss", None, "given with omega, or replaced by a record of read_dma"
+        raise described_error(
+            "storage or loss",
+            "is not given",
+            "given beside omega; or give a record of read_dma alone",
         )
     check_choice("on", on, "both", "storage")
     mode = _mode("tension" if mode is None else mode)
@@ -321,8 +325,10 @@ def fit_relaxation(
         temperature = t.temperature if temperature is None else temperature
         t, relaxation = t
     elif relaxation is None:
-        raise ParameterError(
-            "relaxation", None, "given with t, or replaced by a record of read_relaxation"
+        raise described_error(
+            "relaxation",
+            "is not given",
+            "given beside t; or give a record of read_relaxation alone",
         )
     curve = data_of(Relaxation, t, relaxation)
     first, *_, last = curve.relaxation.tolist()  # data_of has sorted them by time
@@ -376,11 +382,9 @@ def _fit_series(
     (low, high) = curve.band
     data = thinned(curve)
     if high > MOST_SPREAD * low:
-        raise ParameterError(
-            data._fields[0],
-            f"from {data[0][0]:g} to {data[0][-1]:g}",
-            f"within a factor of {MOST_SPREAD:g}",
-        )
+        found = f"extends from {data[0][0]:g} to {data[0][-1]:g}"
+        allowed = f"within a factor of {MOST_SPREAD:g}: leave the outer points out"
+        raise described_error(data._fields[0], found, allowed)
     spectrum, grid, reached = fewest_modes(data, target, modes)
     T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0  # the longest comes first
     prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)
@@ -479,8 +483,8 @@ def fit_at_strain(
         if abs(math.log(strain / last)) <= _CHANGE:
             return fit
     raise ConvergenceError(
-        "fit_at_strain: the iteration for the strain of the contact does not converge; the last "
-        f"two values are {last} and {strain}"
+        "fit_at_strain: the strain of the contact does not converge, its last two values are "
+        f"{last:.6g} and {strain:.6g}: fit the record of one strain by fit_prony"
     )
 
 
@@ -497,7 +501,9 @@ def _sets_of(records: Sequence[DynamicModuli]) -> list[Any]:
     for record in records:
         if record.mean_strain is None:
             raise described_error(
-                "records", f"have no strain ({record.source})", "with the strain of each point"
+                "records",
+                f"have one without strain ({record.source or 'without source'})",
+                "with the strain of each point: add its column to the file, or fit_prony it",
             )
         order = np.argsort(strains := np.asarray(record.strain), kind="stable")
         # cut behind each strain that the next one exceeds by more than the gap

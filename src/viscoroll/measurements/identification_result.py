@@ -18,6 +18,8 @@ from ..core import (
     check_integer,
     check_names,
     check_number,
+    describe_value,
+    described_error,
 )
 from ..core.plots.result_figures import identification
 from .identification_report import as_dataset, report
@@ -326,14 +328,13 @@ class Identification(Result):
         True
         """
         if not isinstance(record, Record):
-            raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
+            raise ParameterError(
+                "record", describe_value(record), "a Resistance, Traction or Coastdown"
+            )
         for name, (_, span) in record.initial_values(self.cylinder.R).items():
             if span is not None:
-                raise ParameterError(
-                    name,
-                    None,
-                    "a number",
-                    f"{name} of the record is not given: a prediction needs it",
+                raise described_error(
+                    f"{name} of the record", "is not given", "given for a prediction"
                 )
         return self._predict(
             record,

@@ -26,6 +26,7 @@ from ..core import (
     check_integer,
     check_keys,
     check_names,
+    describe_value,
     described_error,
     read_toml,
     section_error,
@@ -138,9 +139,9 @@ def identify(
     >>> round(result.values["mu"], 6)
     0.3
     """
-    shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else shift or {}
+    shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else {} if shift is None else shift
     data = [data] if isinstance(data, Record) else data
-    prior = prior or {}
+    prior = {} if prior is None else prior
     for name, value, kind, allowed in (
         ("cylinder", cylinder, Cylinder, "a Cylinder"),
         ("unknown", unknown, Mapping, "{name: (low, high)}"),
@@ -155,7 +156,7 @@ def identify(
         ("prior", prior, Mapping, "{name: (value, standard deviation)}"),
     ):
         if not isinstance(value, kind):
-            raise ParameterError(name, f"{value!r:.60}", allowed)
+            raise ParameterError(name, describe_value(value), allowed)
     check_names("shift", shifts, SECTIONS, "a body")
     count = check_integer("starts", starts, 1)
     seed = check_integer("seed", seed, 0)
@@ -197,8 +198,8 @@ def _refuse_tables(cylinder: Cylinder, unknowns: list[Unknown]) -> None:
     if changing and cylinder.scene().tabulated:
         raise described_error(
             "coupled",
-            f"gives a table of the coupled solution for each trial value of {changing[0]}",
-            "False, for the fast law, whose error validity states",
+            f"needs a table of the coupled solution for each trial value of {changing[0]}",
+            "False in the Cylinder, for the fast law, whose error validity() states",
         )
 
 
@@ -215,15 +216,17 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
     for record in data:
         if not isinstance(record, Record):
             raise ParameterError(
-                "data", f"{record!r:.60}", "a list of Resistance, Traction and Coastdown"
+                "data", describe_value(record), "a list of Resistance, Traction and Coastdown"
             )
         # records of the same kind before that were given no name either
         alike = sum(type(other) is type(record) and not other.name for other in found.values())
         name = record.name or (f"{record.LABEL} {alike + 1}" if alike else record.LABEL)
         if name in found:
-            raise ParameterError("name", repr(name), "different for each record")
+            raise ParameterError("name", repr(name), "different for each record: give name=")
         if not record.sigma:
-            raise ParameterError(f"{name}: sigma", None, "given for a record without values")
+            raise described_error(
+                f"{name}: sigma", "is not given", "given for a record without values"
+            )
         found[name] = record
     if not found:
         raise described_error("data", "is empty", "at least one record")
@@ -518,7 +521,9 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     for name in (*kind.COORDINATES, *section.columns, *section.units):
         if name not in present:
             raise missing_column(
-                table, headings[name], f": name one of these in columns = {{ {name} = ... }}"
+                table,
+                headings[name],
+                f"; name that of {name} in [[data]] by columns = {{ {name} = '...' }}",
             )
     others = [
         repr(heading)
@@ -527,10 +532,10 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     ]
     if others and not present.keys() & set(kind.QUANTITIES):
         name = kind.QUANTITIES[0]
-        problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}"
+        problem = f"has no column {' or '.join(kind.QUANTITIES)}, only {', '.join(others)}"
         advice = (
-            f"if one of them is {name}, name it in columns = {{ {name} = ... }}; to plan a "
-            "test, delete them"
+            f"if one of these is {name}, name it in [[data]] by columns = {{ {name} = '...' }}; to "
+            "plan a test, remove these columns from the file"
         )
         raise FileError(path, f"{problem}: {advice}")
     if others:
@@ -571,7 +576,7 @@ def _said(table: Table, names: set[str]) -> dict[str, str]:
                 found.setdefault(name, []).append(heading)
     for name, (first, *others) in found.items():
         if others:
-            advice = f"name the one of {name} in columns = {{ {name} = ... }}"
+            advice = f"name one in [[data]] by columns = {{ {name} = {first!r} }}"
             raise FileError(table.path, f"{first!r} and {others[0]!r} both say {name}: {advice}")
     return {name: first for name, (first, *_) in found.items()}
 
@@ -595,4 +600,6 @@ def _refuse_unclear_turns(table: Table, index: int, unit: str) -> None:
                 doubtful = f"the unit {each}"
     if doubtful:
         problem = f"column {heading!r} has {doubtful}, and may be of turns or of radians"
-        raise FileError(table.path, f'{problem}: give units = {{ omega = "rpm" }}, or such')
+        raise FileError(
+            table.path, f'{problem}: give units = {{ omega = "rpm" }} or "rad/s" in [[data]]'
+        )

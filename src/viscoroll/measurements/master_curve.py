@@ -438,7 +438,7 @@ def _shifts_by_overlap(
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
         name = "moduli at {:g} and {:g} °C".format(*pair)
         if not alignment.mismatch <= _LARGEST_MISMATCH:
-            allowed = "curves that overlap with their neighbours"
+            allowed = "curves that overlap: leave one out, or give shift="
             raise described_error(name, "do not agree after any shift", allowed)
         if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
             problem = (
@@ -491,8 +491,8 @@ class _LogCurve:
             [np.bincount(which, np.log(column)) / count for column in columns], axis=1
         )
         if self.x.size < 2:
-            found = f"{self.x.size} frequency at a temperature"
-            raise ParameterError("omega", found, "at least 2 at each")
+            found = f"has {self.x.size} value at a temperature"
+            raise described_error("omega", found, "two frequencies or more at each")
         self.interpolate = (
             CubicSpline(self.x, self.y) if self.x.size > 3 else PchipInterpolator(self.x, self.y)
         )

@@ -591,7 +591,7 @@ class Coastdown(Record):
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t = np.asarray(self.t) - t0
-        omega0 = V0 / cylinder.R if omega0 == ROLLING else omega0
+        omega0 = (None if V0 is None else V0 / cylinder.R) if omega0 == ROLLING else omega0
         drive = {name: values[name] for name in ("brake", "drag") if values.get(name)}
         motion = cylinder.roll(
             V0, omega0, np.maximum(t, 0.0), rtol=_RTOL_DRIVEN if drive else _RTOL, **drive

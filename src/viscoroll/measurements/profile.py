@@ -516,6 +516,7 @@ class ProfileWalk:
             f = math.sqrt(max(found[d].chi2 - self.best.chi2, 0.0)) - goal
             return 0.0 if abs(f) < _CLOSE * goal else f
 
+        a = d
         f = excess(d)
         while f < 0.0:
             if abs(reach - d) < 1e-9:

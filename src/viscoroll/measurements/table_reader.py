@@ -14,7 +14,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import FileError, Floats, ParameterError, check_names, warn_of_model
+from ..core import (
+    FileError,
+    Floats,
+    ParameterError,
+    check_names,
+    describe_value,
+    described_error,
+    warn_of_model,
+)
 from .dma_columns import BARE, OF_SHEAR, QUANTITIES, UNITS, Column, columns_of, meanings, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE
 from .text_cells import NO_UNIT, Numbers, conversion, readings
@@ -80,12 +88,13 @@ def storage_and_loss(
         # sum of those of both
         rounding = rounding * (exact["modulus"] / other) ** 2
         table.require(
-            rounding <= _ROUNDED, f"{both} do not determine the other modulus: give tan delta too"
+            rounding <= _ROUNDED,
+            f"{both} differ too little to give the other modulus: add a column of tan delta",
         )
     for name in columns.keys() - set(pair):
         values, half = columns[name]
         agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half
-        advice = "give its unit by units=, or remove one of the columns"
+        advice = f"give units={{{name!r}: UNIT}}, or remove one of these columns"
         table.require(agrees, f"{name} contradicts {both}: {advice}")
     return storage, loss
 
@@ -207,7 +216,9 @@ def understand(
     for what is no table.
     """
     if not isinstance(columns, Mapping | None):
-        raise ParameterError("columns", f"{columns!r:.60}", "a dict, quantity -> heading")
+        raise ParameterError(
+            "columns", describe_value(columns), "a dict, as {'frequency': 'f [Hz]'}"
+        )
     named = dict(columns or {})
     known = QUANTITIES[test]
     bare = BARE[test]
@@ -251,14 +262,12 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     by_name = isinstance(units, Mapping)
     known = QUANTITIES[test]
     first = BARE[test][0]
-    two = (
-        "(time, moduli), as ('s', 'MPa')"
-        if first == "time"
-        else "(frequency, moduli), as ('Hz', 'MPa')"
+    allowed = (
+        f"({first.split()[-1]}, moduli), as ({UNITS[first]!r}, 'MPa'), or a dict, as "
+        f"{{{first!r}: {UNITS[first]!r}}}"
     )
-    allowed = f"{two}, or a dict, quantity -> unit"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
-        raise ParameterError("units", f"{units!r:.60}", allowed)
+        raise ParameterError("units", describe_value(units), allowed)
     # each of the two is for all quantities that are converted to the same unit
     of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
     pairs = (
@@ -271,9 +280,7 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
         try:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
-            raise ParameterError(
-                "units", f"{units!r:.60}", f"{allowed}; {unit!r} is not a unit of {name}"
-            ) from error
+            raise described_error("units", f"has {unit!r} for {name}", allowed) from error
     return (pairs, {}) if by_name else ({}, pairs)
 
 
@@ -358,7 +365,7 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
         alike = [column for column in taken if UNITS[column.name] == unit]
         without = [column for column in alike if not column.stated]
         if without and len(without) < len(alike):
-            advice = f"give units={{{without[0].name!r}: ...}}"
+            advice = f"give units={{{without[0].name!r}: UNIT}}"
             raise FileError(
                 table.path, f"column {without[0].heading!r} has no unit, but others do: {advice}"
             )
@@ -387,7 +394,7 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
     problem = f"an earlier row has the same {name} and another modulus"
-    advice = "rows at several temperatures need a column of temperature; keep one strain"
+    advice = "for several temperatures add a column of temperature; of several strains keep one"
     table.require(holds, f"{problem}: {advice}")
     if change.max(initial=0.0) > _SCATTER:
         text = f"rows of one {name} have moduli that differ by {np.expm1(change.max()):.0%}"
@@ -432,11 +439,11 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     for start in starts:
         values = {*lines.get(start, {}).values()}
         if len(values) != 1 or np.isnan([*values]).any():
-            problem = (
-                "the lines above it do not state one temperature, as 'Temperature 20 °C', "
-                "of the rows below"
+            raise FileError(
+                table.path,
+                f"line {numbers[start]}: write one temperature of the rows from here on above this "
+                "line, as 'Temperature 20 °C'",
             )
-            raise FileError(table.path, f"line {numbers[start]}: {problem}")
         temperature[start:] = values.pop()  # blocks below overwrite theirs
     return temperature
 
@@ -482,12 +489,12 @@ def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
             with suppress(FileError):
                 spread = factor * np.ptp(table.numbers(index).values)
             if factor and spread > SAME_TEMPERATURE:
-                problem = f"column {heading!r} looks like temperatures, which are not read"
-                advice = (
-                    f"name it by columns={{'temperature': {heading!r}}}, or remove it if it "
-                    "is not of the sample"
+                raise FileError(
+                    table.path,
+                    f"column {heading!r} looks like temperatures, which are not read: name it by "
+                    f"columns={{'temperature': {heading!r}}}, or remove it if it is not of the "
+                    "sample",
                 )
-                raise FileError(table.path, f"{problem}: {advice}")
 
 
 def _kelvins(unit: str) -> float:

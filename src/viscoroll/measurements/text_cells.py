@@ -201,8 +201,8 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
             raise ParameterError(
                 "encoding", f"{name!r:.40}", "an encoding that Python knows, as 'utf-8'"
             ) from None
-        except UnicodeError as error:
-            problem = f"cannot be read in {name} ({error})"
+        except UnicodeError:
+            problem = f"is not written in {name}: give encoding='cp1252' or another"
             continue
         if "\0" in text:
             raise FileError(path, "is not a text file: it has null bytes")

@@ -182,8 +182,8 @@ def read_table(
         found = ", ".join(map(str, starts))
         raise FileError(
             path,
-            f"has {len(parts)} tables with different headings (from lines {found}): keep one of "
-            "them",
+            f"has {len(parts)} tables with different headings (their rows begin in lines "
+            f"{found}): keep one of them in the file",
         )
     rows = [row for *_, rows in parts for row in rows]
     mark = decimal or decimal_mark(
@@ -230,7 +230,9 @@ class _Layout:
         """
         widths = Counter(len(line.cells) for line in self.lines if line.numeric)
         if not widths:
-            raise FileError(self.path, "has no row of numbers")
+            raise FileError(
+                self.path, "has no row of numbers: a table has two columns of numbers or more"
+            )
         self.width = widths.most_common(1)[0][0]
         self.cut = f"separated by {SEPARATORS[self.separator]}"
 
@@ -280,8 +282,7 @@ class _Layout:
                     problem = (
                         "has numbers above the headings: keep one table of the file"
                         if all(line.cells)
-                        else "is a second row of headings: keep it and the columns of one of its "
-                        "numbers"
+                        else "has headings of groups of columns: remove it, and keep one group"
                     )
                     raise self.fault(line, problem)
             return heads
@@ -308,7 +309,8 @@ class _Layout:
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
                 raise self.fault(
-                    line, f"contains column names, but does not have {width} columns, {self.cut}"
+                    line,
+                    f"contains column names: write {width} names, {self.cut} as the numbers are",
                 )
         names = [f"column {n}" for n in range(width)]
         lines[:first] = [lines[first]._replace(text=str(names), cells=names, numeric=False)]
@@ -348,8 +350,8 @@ class _Layout:
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
                     row,
-                    f"has {len(row.cells)} columns, but line {line.number} has "
-                    f"{len(names)}, {self.cut}",
+                    f"has {len(row.cells)} cells {self.cut}, but line {line.number} has "
+                    f"{len(names)} headings: mend one of the two",
                 )
         return names, self.units(body[:first], len(names)), rows
 
@@ -476,8 +478,8 @@ def missing_column(table: Table, name: str, advice: str = "") -> FileError:
     advice: words with their punctuation that end the message, as ": name one of these"; "" for
     none.
     """
-    found = f"{', '.join(table.headings)}{suggestion(name, table.headings)}"
-    return FileError(table.path, f"has no column {name!r}, but {found}{advice}")
+    found = f"{', '.join(map(repr, table.headings))}{suggestion(name, table.headings)}"
+    return FileError(table.path, f"has no column {name!r}; its columns are {found}{advice}")
 
 
 def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
@@ -515,7 +517,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     if index is None:
         raise missing_column(table, name)
     if len(table.starts) > 1:
-        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them")
+        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them in the file")
     heading = table.headings[index]
     if not unit and MULTIPLIED.search(heading):
         unit = heading  # in which nothing is converted

@@ -15,7 +15,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import ParameterError, check_array, check_names, check_number, si_unit
+from ..core import (
+    ParameterError,
+    check_array,
+    check_names,
+    check_number,
+    describe_value,
+    si_unit,
+)
 from ..materials import Material, Prony
 from ..rollers import Cylinder
 from .measurement_records import OF_RECORDS, Record
@@ -154,7 +161,7 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
         raise ParameterError(
             f"unknown {name}",
             f"({low:g}, {high:g})",
-            f"a range that contains the initial guess, {start:.6g}",
+            f"a range that contains the value with which the search starts, {start:.6g}",
         )
     linear = name.split(":")[0] in _LINEAR
     unknown = Unknown(
@@ -186,16 +193,14 @@ def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
     does not ascend.
     """
     bounds = Unknown.bounds(name)
-    if (
-        argument == "prior"
-    ):  # value and standard deviation may have different units, so that none is taken
+    if argument == "prior":  # its two numbers may have different units, so that none is taken
         del bounds["unit"]
     pair = check_array(f"{argument} {name}", numbers, **bounds)
     if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):
-        allowed = {"unknown": "(low, high), low < high", "prior": "(value, standard deviation)"}[
-            argument
-        ]
-        raise ParameterError(f"{argument} {name}", f"{numbers!r:.60}", allowed)
+        allowed = (
+            "(low, high), low < high" if argument == "unknown" else "(value, standard deviation)"
+        )
+        raise ParameterError(f"{argument} {name}", describe_value(numbers), allowed)
     return pair.tolist()
 
 
@@ -233,7 +238,7 @@ def cylinder_of(
                 raise ParameterError(
                     record.label("temperature"),
                     record.temperature,
-                    f"given with a shift of the {section}, as vr.WLF(T0=20.0)",
+                    f"left out, or given with shift={{{section!r}: ...}}, as vr.WLF(T0=20.0)",
                 )
             changed = changed.at(record.temperature, shifts[section])
         if changed is not body:

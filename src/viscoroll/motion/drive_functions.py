@@ -22,7 +22,6 @@ from ..core import (
     check_array,
     described_error,
     exactly_one_error,
-    mark_dimensionless,
     slope_tan_cos,
 )
 from ..kernels.records import (
@@ -34,7 +33,7 @@ from ..kernels.records import (
     PRESCRIBED_V,
 )
 from .drive_pieces import Piecewise, ends_of, piecewise
-from .motion_arguments import Drive, start_speeds
+from .motion_arguments import Drive, dimensionless_error, start_speeds
 
 #: Bytes of pieces that are packed at a time where motions have functions of their own: little
 #: beside the schedules, and yet many motions at once where these are short.
@@ -328,9 +327,11 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     if stated is not None:
         given = check_array(f"{name}0", stated)
         broadcast_shape(**{f"{name}0": given, name: start if start.size > 1 else np.empty(())})
-        if not (np.abs(given - start) <= _START * scale).all():
-            allowed = f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0"
-            raise mark_dimensionless(ParameterError(f"{name}0", stated, allowed))
+        differ = np.abs(given - start) > _START * scale
+        if differ.any():
+            text = f"{name}0 = {{}}: must be None, or {{}}, the prescribed {name} at t = 0"
+            numbers = np.stack(np.broadcast_arrays(given, start))[:, differ][:, 0]
+            raise dimensionless_error(f"{name}0", text, name, *numbers)
     if start.size > 1:
         return start
     return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])
@@ -403,8 +404,8 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
     if jumps.any():
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
-        allowed = "continuous, as it is a prescribed speed"
-        raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", allowed))
+        text = f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed"
+        raise dimensionless_error(name, text, "t", when)
     terms = np.zeros_like(speed.terms)
     terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1])
     terms *= _dx_dt(lengths)[..., None]

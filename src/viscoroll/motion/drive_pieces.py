@@ -32,14 +32,13 @@ from numpy.polynomial.polynomial import polyval
 from ..core import (
     Floats,
     NDArray,
-    ParameterError,
     Schedule,
     check_array,
-    mark_dimensionless,
     require_time_argument,
     shape_error,
 )
 from ..kernels.numerics.interpolation import powers_of_chebyshev
+from .motion_arguments import dimensionless_error
 
 #: Terms of a polynomial.
 TERMS = 14
@@ -323,10 +322,11 @@ def fit_callable(
     samples = SAMPLES
     if resolve is not None:
         if resolve * MOST < end:
-            allowed = (
-                f"at least {end / MOST:.6g}: at most {MOST} samples up to t = {end:.6g} are taken"
+            text = (
+                "resolve = {}: must be at least {}: "
+                f"at most {MOST} samples up to t = {{}} are taken"
             )
-            raise mark_dimensionless(ParameterError("resolve", resolve, allowed))
+            raise dimensionless_error("resolve", text, "t", resolve, end / MOST, end)
         samples = max(math.ceil(end / resolve), SAMPLES)
     sampled = _Sampled(name, function, end=end, rtol=rtol, low=low, samples=samples)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
@@ -374,12 +374,12 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
         failed.add((start, stop))
         short = stop - start <= _LEAST_SPACINGS * np.spacing(stop)
         if sampled.taken - sampled.times.size > MOST or (cut is None and short):
-            found = (
-                f"a function that piecewise polynomials cannot approximate near t = {start:.6g} "
-                f"({sampled.taken} values of it were taken)"
+            text = (
+                f"{sampled.name} is a function that piecewise polynomials cannot approximate near "
+                f"t = {{}} ({sampled.taken} values of it were taken): must be smooth except for "
+                "jumps and corners; or give a Schedule"
             )
-            allowed = "smooth except for jumps and corners; give it as a Schedule"
-            raise mark_dimensionless(ParameterError(sampled.name, found, allowed))
+            raise dimensionless_error(sampled.name, text, "t", start)
         # at a cut the parts end and begin at neighbouring doubles, else both in the middle; the
         # left part is put last, to be fitted first, as ``so_far`` needs the order of time
         left, right = cut or (0.5 * (start + stop),) * 2

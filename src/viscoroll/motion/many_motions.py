@@ -23,7 +23,6 @@ from ..core import (
     ParameterError,
     broadcast_vector,
     extent,
-    mark_dimensionless,
     run_blocks,
 )
 from ..kernels.records import Motions
@@ -31,7 +30,7 @@ from ..laws import record_of_alphas, record_of_materials
 from ..laws.law_table import law_table
 from ..materials import Bodies
 from .flow import FlowResult, flow_map, look_up_ensemble
-from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES
+from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES, dimensionless_error
 from .motion_problem import MotionProblem, integrate
 
 #: Motions in a block of work where all are integrated: some hundredths of a second.
@@ -157,7 +156,8 @@ def _solve_by_flow_map(
             (abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0
         )
     elif (speed := speed * unit) > SPEED_RANGE[1]:
-        raise mark_dimensionless(ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]"))
+        text = "speed = {}: must be at most {}"
+        raise dimensionless_error("speed", text, "V", speed / unit, SPEED_RANGE[1] / unit)
     if not speed > 0.0:
         return None
     chosen = flow_map(scene, speed, threads=batch.threads)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import (
+    DIMENSIONLESS,
     ArrayLike,
     Feedback,
     Floats,
@@ -25,7 +26,6 @@ from ..core import (
     digits_beside,
     extent,
     make_dimensionless,
-    mark_dimensionless,
     shape_error,
     strip_labels,
 )
@@ -142,9 +142,8 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     for name, array in (("V0", V), ("omega0", omega)):
         fastest = max(extent(array), key=abs) if array.size else 0.0
         if abs(fastest) > high:
-            raise mark_dimensionless(
-                ParameterError(name, fastest, f"at most {high:g} in magnitude")
-            )
+            text = f"{name} = {{}}: must be at most {{}} in magnitude"
+            raise dimensionless_error(name, text, name, fastest, high)
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer(
         (V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16
@@ -152,32 +151,43 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
         tiny = larger[(larger > 0.0) & (larger < low)]
         if tiny.size:
-            raise mark_dimensionless(
-                ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {low:g}")
-            )
+            text = "max(|V0|, R |omega0|) = {}: must be 0, or at least {}"
+            raise dimensionless_error("V0, omega0", text, "V0", tiny.min(), low)
     return V, omega
 
 
+def dimensionless_error(
+    name: str, text: str, quantity: str, *numbers: float, scale: Scale = DIMENSIONLESS
+) -> ParameterError:
+    """Return the error, not raised, of a sentence that states dimensionless numbers.
+
+    name: name of the parameter.
+    text: the sentence, with a place {} for each number.
+    quantity: the quantity of these numbers.
+    numbers: their values; the first is the one that was found.
+    scale: :class:`Scale` of the roller, in whose unit the numbers are told.  Where it differs
+    between motions they are told as they are, and the sentence ends with "(dimensionless)".
+    """
+    if np.ndim(scale[quantity]):
+        return dimensionless_error(name, f"{text} (dimensionless)", quantity, *numbers)
+    values = [scale[quantity] * x for x in numbers]
+    unit = scale.unit(quantity) if scale.si else ""
+    sentence = text.format(*(f"{digits_beside(x, *values)} {unit}".rstrip() for x in values))
+    error = ParameterError(name, values[0], sentence.partition(": must be ")[2], sentence)
+    error.dimensionless = (text, quantity, *numbers)
+    return error
+
+
 def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
-    """Return an error whose message also says by which units the dimensionless numbers in it were
-    divided.
+    """Return an error that tells the dimensionless numbers of its message in the units of a roller;
+    ``error`` itself for a scene, or where its message states none.
 
     error: the :class:`ParameterError`.
-    scale: :class:`Scale` of the roller, which gives these units in s, m/s and N/m.
-    Returns a new ParameterError; ``error`` itself for a scene, or where its message states no
-    dimensionless numbers.  Units that differ between motions are not listed: the message then ends
-    with "(dimensionless)".
+    scale: :class:`Scale` of the roller.
     """
-    if not (scale.si and error.is_dimensionless):
+    if not (scale.si and error.dimensionless):
         return error
-    about = "dimensionless"
-    if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):
-        T, V, P = (
-            f"{scale[name]:.6g} {unit}"
-            for name, unit in (("t", "s"), ("V", "m/s"), ("force", "N/m"))
-        )
-        about += f": times divided by {T}, speeds by {V}, forces by {P}"
-    return ParameterError(error.name, error.value, error.allowed, f"{error} ({about})")
+    return dimensionless_error(error.name, *error.dimensionless, scale=scale)
 
 
 # --- What drives motions, as the caller gives it ---

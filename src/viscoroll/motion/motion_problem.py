@@ -34,7 +34,6 @@ from ..core import (
     check_array,
     check_bool,
     check_number,
-    described_error,
     make_dimensionless,
     run_blocks,
 )
@@ -192,8 +191,7 @@ def make_problem(
     except ParameterError as error:
         raise with_scales(error, scale) from error
     if single and functions.counts != (1, 1):
-        found = f"has values for {max(functions.counts)} motions"
-        raise described_error("drive", found, "the drive of one motion: for many use ensemble")
+        require_single(**{"a load or a gain": np.empty(max(functions.counts))})
     return MotionProblem(
         roller=roller,
         scene=scene,
@@ -287,12 +285,14 @@ def _apply_standstill(
     why = (
         "a speed is prescribed"
         if start.functions.prescribed
-        else "it starts at V0 = omega0 = 0 and must yet break away"
+        else "the cylinder starts at V0 = omega0 = 0 and must yet break away"
         if np.any((V == 0.0) & (np.asarray(start.omega0) == 0.0))
-        else "it starts in full slip" * bool(np.any(np.abs(start.omega0 - V) > limit))
+        else "the cylinder starts in full slip" * bool(np.any(np.abs(start.omega0 - V) > limit))
     )
     if why:
-        sentence = f"rested is given, but {why}: leave it out, the loss of the start is not known"
+        sentence = (
+            f"rested is given, but {why}: leave rested out, the loss of the start is not known"
+        )
         raise ParameterError("rested", rested, "left out", sentence)
     # part of V; V = 0 with omega0 = 0 was refused above, and without a limit any other omega0 slips
     lost = FreeRolling.of_scene(scene, V).start(time / scale["t"]).speed

@@ -593,7 +593,7 @@ def roll(
     warn_of_speeds(problem.roller, V0, motion.V)
     if not motion.success:
         text = (
-            f"roll: {motion.status.message}; outputs not reached are NaN, and `message` gives "
+            f"roll: {motion.status.message}; outputs not reached are NaN, and .message gives "
             "the last state"
         )
         warnings.warn(text, RuntimeWarning, stacklevel=2)

@@ -25,7 +25,6 @@ from concurrent.futures import (
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from os import PathLike
-from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
@@ -36,8 +35,10 @@ from ..core import (
     Interrupted,
     ParameterError,
     ViscorollError,
+    as_path,
     cancel_with,
     check_bool,
+    describe_value,
     import_extra,
     thread_count,
 )
@@ -137,7 +138,8 @@ def run_ensemble(
     """
     if progress != "lines":
         progress = check_bool("progress", progress)
-    store = Store(Path(path).absolute(), run)
+    _require_run(run)
+    store = Store(as_path(path).absolute(), run)
     import_extra("zarr", "runs")
     store.refuse_other()
     with _executor(store, cluster, threads) as (
@@ -202,6 +204,12 @@ def _evaluate_missing(
             future.cancel()
 
 
+def _require_run(run: Any) -> None:
+    """Raise ParameterError for what is no :class:`.runfile.Run`, as the path of its file."""
+    if not isinstance(run, Run):
+        raise ParameterError("run", describe_value(run), "a Run, as runs.read_run(path) returns it")
+
+
 @contextmanager
 def _executor(
     store: Store, cluster: str | None, threads: int | None
@@ -248,7 +256,7 @@ def _executor(
             client = stack.enter_context(_client(distributed, cluster, threads))
             workers = sum(client.nthreads().values())
             if not workers:
-                raise FileError(cluster, "this cluster has no workers")
+                raise FileError(cluster, "this cluster has no workers: start some by `dask worker`")
             # not pure: equal calls are evaluated again, since a block may have been lost on disk
             with client.get_executor(pure=False, retries=_RETRIES) as pool:
                 yield pool, workers, client.scatter(store, broadcast=True)
@@ -417,6 +425,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     >>> found.trial, found.workers, found.seconds > 0.0
     (16, 1, True)
     """
+    _require_run(run)
     workers = min(thread_count(threads), run.blocks)
     warn_of_materials(run)
     trial = min(run.block, _TRIAL[run.method])

@@ -276,7 +276,7 @@ def _as_bytes(files: Mapping[str, Any]) -> dict[str, bytes]:
 # --- Identity of a store ---
 
 #: Last words of an error about the folder of a store.
-ADVICE = "give another folder with -o, or delete this one"
+ADVICE = "give another folder (-o), or delete this one"
 
 
 def about(run: Run) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from ..core import (
     MotionStatus,
     Result,
     SummaryRow,
+    as_path,
     column_name,
     fix_texts,
     import_extra,
@@ -106,7 +107,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     >>> print(vr.runs.verify("results.zarr"))
     complete: 1 block and the summaries match their SHA-256
     """
-    root = Path(path)
+    root = as_path(path)
     start = start_of(path)
     motions, size, blocks = (
         int(start.about[name]) for name in ("motions", "motions_a_block", "blocks")
@@ -135,15 +136,14 @@ def start_of(path: str | PathLike[str]) -> Record:
     Raises FileError if the folder does not exist, may not be read, or has no such record or a
     damaged one.
     """
-    if not Path(path).is_dir():
+    if not as_path(path).is_dir():
         raise FileError(path, "is not a results store: the folder does not exist")
     refuse_unreadable(Path(path))
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
         raise FileError(
             path,
-            "is not a results store, or its record `start` is damaged: run the command that wrote "
-            "it again",
+            "is not a results store, or its start is damaged: repeat `viscoroll ensemble`",
         )
     return start
 
@@ -227,13 +227,14 @@ class RunResults(Result):
         ...     vr.runs.open_run("results.zarr").motions()
         ... except vr.FileError as error:
         ...     print(error.problem)
-        contains summaries but no motions: run it with keep = "all"
+        contains summaries but no motions: run it again with keep = "all" in [run]
         """
         import xarray as xr
 
         if not (self.path / MOTIONS).is_dir():
             raise FileError(
-                self.path, 'contains summaries but no motions: run it with keep = "all"'
+                self.path,
+                'contains summaries but no motions: run it again with keep = "all" in [run]',
             )
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
@@ -391,7 +392,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     import xarray as xr
 
     import_extra("zarr", "runs")
-    root = Path(path)
+    root = as_path(path)
     start = start_of(root)
     if faults := problems(root, "end", start.run, start.motions):
         raise FileError(

@@ -192,7 +192,7 @@ def _warm_bodies(
     heat = content["heat"]
     speed = heat.get("speed", content["start"].get("V0"))
     if speed is None:
-        raise ParameterError("speed", None, "given in [heat] where [start] has no V0")
+        raise described_error("speed", "is missing", "given in [heat] where [start] has no V0")
     for name, body in bodies.items():
         if isinstance(body, Solid):
             raise described_error(
@@ -201,13 +201,11 @@ def _warm_bodies(
                 "certain beside [heat]: its temperature follows from the law of one material",
             )
     given = {name: heat[name] for name in ("ambient", "conductance")}
-    found = Cylinder(**numbers, **bodies).temperature(speed, **given).temperature
-    if not found.size or np.isnan(found[..., 0]).any():
-        raise described_error(
-            "ambient", "leads to no temperature within the range of the shift", "another"
-        )
+    found = Cylinder(**numbers, **bodies).temperature(speed, **given)
+    for reason in filter(None, np.ravel(found.reason)):
+        raise ParameterError("ambient", given["ambient"], "another", reason)
     # the coldest equilibrium, which a roller takes from cold
-    theta = found[..., 0]
+    theta = found.temperature[..., 0]
     warm = dict(bodies)
     for name, body in bodies.items():
         # a body that does not relax stays as it is

@@ -550,10 +550,11 @@ def locked(root: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise FileError(root, "another process is writing to it") from None
+        raise FileError(root, "another process is writing to it: wait until it has ended") from None
     except (OSError, NotImplementedError) as error:  # some network disks
         raise FileError(
-            root, f"cannot be locked ({getattr(error, 'strerror', None) or error})"
+            root,
+            f"cannot be locked ({getattr(error, 'strerror', None) or error}): use a local disk",
         ) from error
     try:
         yield

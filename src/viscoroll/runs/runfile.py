@@ -524,7 +524,7 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
             path,
             "",
             "correlation",
-            "[correlation] these correlations contradict each other: their matrix must be positive "
-            "definite",
+            "[correlation] these correlations contradict each other (their matrix must be positive "
+            "definite): bring them nearer to 0",
         ) from None
     return replace(inputs, correlated=names, mixing=mixing)

@@ -21,6 +21,7 @@ import numpy as np
 from ..core import (
     FileError,
     Floats,
+    ParameterError,
     check_keys,
     import_extra,
     is_real,
@@ -490,7 +491,9 @@ class _Reader:
         frozen = law(**{key: float(value) for key, value in parameters.items()})
         # scipy returns NaN for parameters out of range, and raises nothing
         if not np.isfinite(frozen.ppf(0.5)):
-            raise self.fault(number, f"scipy.stats.{name} does not allow these parameters")
+            raise self.fault(
+                number, f"scipy.stats.{name} does not allow these parameters, as scale <= 0"
+            )
         return frozen
 
     def add_column(self, number: Input, table: dict[str, Any]) -> None:
@@ -518,7 +521,7 @@ class _Reader:
         file = table.get("file")
         column = table.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
-            raise self.fault(number, "must name a distribution, or a file and a column")
+            raise self.fault(number, "must have the key distribution, or the keys file and column")
         where = f"column {column!r} of {file}"
         path = self.path.parent / file
         try:
@@ -527,12 +530,20 @@ class _Reader:
                 path, column, si_unit(number.key) if self.si and "." not in number.section else "1"
             )
         except (OSError, ValueError, KeyError, FileError) as error:
-            text = " ".join(str(error.problem if isinstance(error, FileError) else error).split())
-            raise self.fault(number, f"{where} cannot be read ({text:.200})") from error
+            problem = (
+                "the file does not exist"
+                if not path.exists()
+                else f"the file has no {column!r}"
+                if isinstance(error, KeyError)
+                else getattr(error, "problem", error)
+                if type(error) in (FileError, ParameterError, ValueError)
+                else f"the file is damaged, or no {path.suffix} file"
+            )
+            raise self.fault(number, f"{where}: {problem}") from error
         # one entry for each file, however it is spelt
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
         if columns and next(iter(columns.values())).size != values.size:
-            raise self.fault(number, f"{where}: its length differs from that of the other columns")
+            raise self.fault(number, f"{where} is not as long as the other columns of this file")
         columns[number.name] = values
 
 
@@ -560,7 +571,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
         import pandas as pd
 
         import_extra("pyarrow", "parquet")
-        values = pd.read_parquet(path, columns=[column])[column].to_numpy()
+        values = pd.read_parquet(path)[column].to_numpy()
         ways = readings(column)
         given = next((each.unit for each in ways if each.unit), "")
         if ways[0].log or MULTIPLIED.search(column):
@@ -574,7 +585,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
             given = str(dataset[column].attrs.get("units", ""))
         advice = f"give the variable the attribute units, as '{unit}'"
     else:
-        raise ValueError("a sample must be .csv, .nc or .parquet")
+        raise ValueError("a file of samples must end in .csv, .nc or .parquet")
     if path.suffix != ".csv":
         factor, offset = conversion_of_column(path, column, unit=given, wanted=unit, advice=advice)
         values = factor * values + offset
@@ -584,5 +595,5 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
         or values.dtype.kind not in "iuf"
         or not np.isfinite(values).all()
     ):
-        raise ValueError("it must contain finite numbers, one in each row")
+        raise ValueError("must contain finite numbers, one in each row")
     return np.ascontiguousarray(values, np.float64)

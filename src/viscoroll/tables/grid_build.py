@@ -178,8 +178,7 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
     """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa =
     mu = 1.
 
-    what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable` of half-spaces, or the dataset
-    of one.
+    what: a :class:`Scene`, a :class:`Cylinder`, a law of half-spaces, or the dataset of one.
     alpha: what the caller gave for an axis of alpha; None without.
     Raises ParameterError for anything else (the law of a layer or of every alpha too), for a roller
     whose parameters are arrays, for a cylinder whose scene is out of range, and for alpha of a
@@ -214,8 +213,7 @@ def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
         ``above`` (>) and ``high`` (<=) of the values, by default none.
     Raises ParameterError for nodes that are not numeric, not finite, out of range or not strictly
     increasing, for none, for more than one axis, and for a unit of another dimension.
-    Returns the nodes, (n,), n >= 1, strictly increasing, float64, in the unit of ``bounds``; always
-    a copy.
+    Returns a copy of the nodes, (n,), n >= 1, strictly increasing, in the unit of ``bounds``.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
@@ -286,8 +284,7 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
 
     title: title of the grid.
     grid: axes of the grid in words.
-    command: command that computed it, for ``history``; None or "": the command line of this
-    process.
+    command: command that computed it, for ``history``; None or "": that of this process.
     Returns name -> text: Conventions, title, institution, source, history (time of the call in UTC
     and the command), references, comment, viscoroll_table ("grid"), schema_version,
     viscoroll_version and grid.
@@ -346,8 +343,7 @@ def build(
     nodes : of method "coupled", numbers of nodes over speed and over creepage, the second odd;
         None: 5 to 13 a decade between the rates of the bodies, the more the faster their compliance
         grows, and 27.
-    progress : of method "coupled", whether to draw a progress bar on standard error, after one
-        second.
+    progress : of method "coupled", whether to draw a progress bar on standard error.
     command : recorded in ``history``; default: the command line of this process.
 
     Returns
@@ -503,8 +499,7 @@ def _evaluate(
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     points: "V", and perhaps "delta" and "alpha" -> arrays that broadcast; without "delta" fields
-        are at delta = 0 as an array (1,), which broadcasts too; without "alpha" the roller has its
-        own.
+        are at delta = 0 as an array (1,), which broadcasts too; without "alpha" it is the roller's.
     names: names of the fields, as in :func:`viscoroll.contact`.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
     Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out
