@@ -78,8 +78,7 @@ def identify(
     seed: int = 0,
     progress: bool = False,
 ) -> Identification:
-    """Fit unknown parameters of a cylinder and its bearing to measurements, with intervals and
-    limits of the data.
+    """Fit unknown parameters of a cylinder and its bearing to measurements, with intervals.
 
     Parameters
     ----------
@@ -240,8 +239,7 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
 
 
 def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Minimum]:
-    """Return the best minimum of chi2, and other minima that are nearly as good and lie in other
-    valleys of chi2.
+    """Return the best minimum of chi2, and other minima nearly as good, in other valleys of chi2.
 
     All searches but the first are rough at first; those that come within 60 of the least chi2 go on
     to the minimum.  The standard deviations of ``problem`` that were not given are estimated on the
@@ -288,8 +286,7 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
     count : number of starts plus 1, as the first search began from the start of the problem; 1:
         nothing is yielded.
     seed : seed of the hypercube, >= 0.
-    Yields coordinates of a start, (unknowns,), ``count`` - 1 times; nothing where no other unknown
-    acts.
+    Yields coordinates of a start, (unknowns,), ``count`` - 1 times, if another unknown acts.
     """
     from scipy.stats import qmc
 
@@ -304,8 +301,8 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
 
 
 def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
-    """Return two starts of a search, on either side of a minimum along the direction that the data
-    determine least.
+    """Return two starts of a search, to either side of a minimum along its least determined
+    direction.
 
     Other valleys of chi2 lie beyond ridges across that direction.  It is the right singular vector
     of the weighted slopes with the least singular value.
@@ -558,8 +555,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
 
 
 def _said(table: Table, names: set[str]) -> dict[str, str]:
-    """Return the headings that say a coordinate or a quantity in words, as "Speed [km/h]" and
-    "Zeit (s)".
+    """Return the headings that say a quantity in words, as "Speed [km/h]" and "Zeit (s)".
 
     table : :class:`.text_table.Table` of a file of data.
     names : names of coordinates and quantities that the user has not named a column of.

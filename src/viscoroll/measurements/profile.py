@@ -216,8 +216,7 @@ class Likelihood:
         return self.axes(delta_chi2)
 
     def undetermined(self, delta_chi2: float) -> list[int]:
-        """Return the indices of unknowns with a wide interval, and of those that are correlated
-        with them.
+        """Return the indices of unknowns with a wide interval, and of those correlated with them.
 
         An interval of a coordinate is wide if it is longer than 2 (a factor of e^2 of a value whose
         coordinate is a logarithm) or than half of the range; an open side counts up to the end of
