@@ -301,8 +301,7 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
 
 
 def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
-    """Return two starts of a search, to either side of a minimum along its least determined
-    direction.
+    """Return two starts of a search, on both sides of a minimum in its least determined direction.
 
     Other valleys of chi2 lie beyond ridges across that direction.  It is the right singular vector
     of the weighted slopes with the least singular value.
