@@ -64,7 +64,7 @@ def ratio_errors(x: float) -> Iterator[tuple[str, float]]:
     yield "r", ulps(r, exact_r)
     yield "k", ulps(k, exact_k)
     yield "i2", ulps(kernels.ratio_i2(x, r), enclosures.ratio_i2(X))
-    if x >= np.finfo(float).tiny:  # below, k itself has lost its digits, and k/x with it
+    if x >= np.finfo(float).tiny:  # far below, k has fewer digits, and k/x with it
         yield (
             "slope of r",
             ulps(kernels.slope_r(x, r, rc), 1 - exact_r / X - exact_r**2, exact_r / X),
