@@ -360,9 +360,7 @@ def to_unit(name: str, value: Any, target: str) -> Any:
     tuple with elements other than float and int, and a new array of an array of objects; else
     numbers in ``target``, in a container of the same kind (a list of a tuple), with the labels of
     xarray and pandas.
-    Raises ParameterError for a unit of another dimension, an unknown one, or one of unclear meaning
-    (:func:`convert`), for numbers with a unit that are not numeric, and for what
-    :func:`split_unit` refuses.
+    Raises ParameterError as :func:`split_unit` and :func:`convert` do.
     """
     if has_no_unit(value):
         return value
@@ -370,7 +368,9 @@ def to_unit(name: str, value: Any, target: str) -> Any:
         try:
             return value.to(pint_spelling(target)).magnitude
         except Exception as error:  # libraries raise errors of their own
-            raise unit_error(name, f"another unit ({value!s:.40})", target) from error
+            found = f"cannot be converted ({' '.join(str(error).split()):.80})"
+            allowed = "a number without dimension" if target == "1" else f"in {target}"
+            raise described_error(name, found, allowed) from error
     numbers, unit = split_unit(name, value)
     return numbers if unit is None else convert(name, numbers, unit, target)
 

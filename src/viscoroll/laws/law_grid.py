@@ -180,7 +180,9 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     """
     import xarray as xr
 
-    content = io.BytesIO(read_sealed(path, _MOST_BYTES, "law or grid", "build it again"))
+    content = io.BytesIO(
+        read_sealed(path, _MOST_BYTES, "law or grid", "write it again by the call that made it")
+    )
     try:
         # else a variable with the unit "s" would become dates or durations
         table = xr.load_dataset(content, decode_times=False)

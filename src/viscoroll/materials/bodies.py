@@ -97,9 +97,8 @@ class Bodies(OneOrMany):
         bodies = {"cylinder": self.cylinder, "base": self.base}
         for name, body in bodies.items():
             if not isinstance(body, Prony):
-                raise ParameterError(
-                    name, describe_value(body), "a Prony series, or one for each pair"
-                )
+                allowed = "a Prony series; of n pairs, one with arrays (n, modes)"
+                raise ParameterError(name, describe_value(body), allowed)
         if self.poisson is not None:
             values = check_array("poisson", self.poisson, above=-1.0, high=0.5)
             if values.shape != (2,):
