@@ -148,10 +148,8 @@ STEADY = each(
             "V": 0.1,
             "torque": vr.Feedback(0.0, V=1.0),
         },
-        "force varies with time: must be a number, an array or a Feedback": [
-            {"force": math.sin},
-            {"force": vr.Schedule([0.0, 1.0], [1.0, 2.0])},
-        ],
+        "force is a function: must be a number, an array or a Feedback": {"force": math.sin},
+        "force is a Schedule: must be": {"force": vr.Schedule([0.0, 1.0], [1.0, 2.0])},
         "torque is a Feedback that varies with time: must be constant in time": {
             "torque": vr.Feedback(math.sin, V=-1.0)
         },
