@@ -173,6 +173,7 @@ CYLINDERS = each(
     {
         "T_epsilon = 0.5: must be >= T_sigma": {"T_epsilon": 0.5},
         "material and E, nu, T_epsilon, T_sigma are both given": {"material": SOFT},
+        "shapes R (2,), load (3,) do": {"R": [0.1, 0.2], "load": [1.0, 2.0, 3.0]},
         "give material=, or all of E, nu, T_epsilon and T_sigma: T_sigma not given": {
             "T_sigma": None
         },
