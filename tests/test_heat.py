@@ -322,6 +322,10 @@ def test_run_file_with_uncertain_surroundings(tmp_path):
         assert close(
             V, ROLLER.replace(material=RUBBER.at(theta)).roll(3.0, 30.0, [1.0]).V[-1], 1e-7
         )
+    band = "measured = { low = 1e-3, high = 1e-2, misfit = 0.01 }\nT_ref"
+    path.write_text(path.read_text().replace("T_ref", band))
+    with pytest.raises(vr.FileError, match=r"ambient = 15 gives no allowed temperature at V = 3 m"):
+        vr.runs.read_run(path)
 
 
 # --- strain ---

@@ -148,10 +148,8 @@ STEADY = each(
             "V": 0.1,
             "torque": vr.Feedback(0.0, V=1.0),
         },
-        "force varies with time: must be a number, an array or a Feedback": [
-            {"force": math.sin},
-            {"force": vr.Schedule([0.0, 1.0], [1.0, 2.0])},
-        ],
+        "force is a function: must be a number, an array or a Feedback": {"force": math.sin},
+        "force is a Schedule: must be": {"force": vr.Schedule([0.0, 1.0], [1.0, 2.0])},
         "torque is a Feedback that varies with time: must be constant in time": {
             "torque": vr.Feedback(math.sin, V=-1.0)
         },
@@ -175,6 +173,7 @@ CYLINDERS = each(
     {
         "T_epsilon = 0.5: must be >= T_sigma": {"T_epsilon": 0.5},
         "material and E, nu, T_epsilon, T_sigma are both given": {"material": SOFT},
+        "shapes R (2,), load (3,) do": {"R": [0.1, 0.2], "load": [1.0, 2.0, 3.0]},
         "give material=, or all of E, nu, T_epsilon and T_sigma: T_sigma not given": {
             "T_sigma": None
         },

@@ -157,8 +157,8 @@ REFUSED = [
             "must have V(V), delta(delta), Q(V, delta)": lambda: of_grid(
                 OTHER_GRID.assign(Q=OTHER_GRID.Q.isel(V=0))
             ),
-            "is not a table of viscoroll: vr.tables.build makes a grid": lambda: vr.tables.save(
-                grid().assign_attrs(viscoroll_table="other"), "x.nc"
+            "(it has no attribute viscoroll_table = 'grid'): vr.tables.build": lambda: (
+                vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc")
             ),
             "given.nc: is not a material file: it is a grid, for vr.load_law and "
             "vr.tables.interpolate": lambda: vr.Material.from_netcdf(netcdf(grid())),

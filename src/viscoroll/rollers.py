@@ -292,7 +292,7 @@ class Cylinder(Methods):
             called = "load" if name == "pressed" else name
             array = check_array(called, values[name], unit=SI, above=low, high=high)
             values[name] = read_only(array)
-        broadcast_shape(**{name: values[name] for name in numbers})
+        broadcast_shape(**self.numbers)
         check_choice("plane", plane, "strain", "stress")
         if material is None:
             if np.ndim(self.T_epsilon) > 1:

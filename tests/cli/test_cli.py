@@ -313,10 +313,10 @@ REFUSED = {
     "material fit rubber.toml --column storage": "argument --column: 'storage' must be "
     "NAME=HEADING, for example storage=Module 1",
     "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=HEADING",
-    "material fit dma.csv --column temperature=E_loss": "column 'E_loss [MPa]': unit 'MPa' is "
+    "material fit dma.csv --column temperature=E_loss": "named for temperature: unit 'MPa' is "
     "not a unit of temperature: give units={'temperature': UNIT}, as 'degC'",
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",
-    "tables law rubber.toml --alpha 1:2 -o law.nc": "material and alpha are both given",
+    "tables law rubber.toml --alpha 1:2 -o law.nc": "which has a material of its own",
     "tables law --alpha low:high -o law.nc": "'low:high' must be LOW:HIGH",
     "tables validate file": "file: is damaged or is not a table",
     "export folder.csv -o all.csv": "all.csv: must be a name that ends in .nc for the results "

@@ -71,7 +71,10 @@ REFUSED = [
             "source = 3": lambda: vr.Measured(1.0, 2.0, 0.1, 3),
             "T_ref = [1.0, 2.0]": lambda: vr.Material(E=1e6, nu=0.4, T_ref=[1.0, 2.0]),
             "material = rigid": lambda: vr.Material.rigid().plot(),
-            "tau | one for each G": lambda: vr.Material.comsol(1e6, 0.4, [], [1.0]),
+            "G has shape (0,) and tau has shape (1,): must be lists of one length": lambda: (
+                vr.Material.comsol(1e6, 0.4, [], [1.0])
+            ),
+            "G has shape (): must be a list": lambda: vr.Material.comsol(1e6, 0.4, 1.0, 1.0),
             "K with beta = 0": lambda: vr.Material.lsdyna(
                 [1e6, 1e6], [1.0, 0.0], K=[1e6, 1e6], nu=0.4
             ),
@@ -99,6 +102,12 @@ REFUSED = [
     *each(
         None,
         {
+            "line 4 is not a row of numbers": lambda: read_column(
+                file("V0;mu\n1;0.1\n2;0.2\nx", "starts.csv"), "V0", "1"
+            ),
+            "line 4 has 1 cells": lambda: read_column(
+                file("V0;mu\n1;0.1\n2;0.2\n3", "starts.csv"), "V0", "1"
+            ),
             "dimension of 1": lambda: read_column(
                 file("V0 [km/h];mu\n0,36;0,1", "starts.csv"), "V0", "1"
             ),
@@ -190,6 +199,7 @@ REFUSED = [
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
             "resistance: V is empty: must be at least one number": lambda: vr.Resistance([], []),
+            "F is empty: must be at least one number": lambda: vr.Resistance([1.0], []),
             "cylinder has other materials: must be a Cylinder with material=": [
                 lambda: vr.fit_prony(*DMA).validity(ROLLER, 1.0),
                 lambda: vr.fit_prony(*DMA).validity(None, 1.0),

@@ -14,7 +14,7 @@ from typing import Any
 
 import viscoroll as vr
 
-from ..core import write_dataset, write_text
+from ..core import described_error, write_dataset, write_text
 from .arguments import FIGURES, FILE, SCENE, command, numbers, option, output, roller_of_argument
 
 # --- Materials and measurements ---
@@ -368,18 +368,19 @@ def law(arguments: Namespace) -> None:
       viscoroll samples
       viscoroll tables law samples/rubber.toml -o rubber.h
 
-    arguments: parsed command line with
-        file, path of a TOML file or of the netCDF of a material, name of a preset, or None;
-        alpha, (low, high) of alpha, dimensionless, for the law of every alpha between, or None;
-        output, path that is written; its suffix is the format.
-    Exactly one of file and alpha must be given.
-    Raises ParameterError for both or none of file and alpha, a range out of bounds, a suffix in
-    capital letters, and a name of a .h file that is no identifier of C; FileError for a file that
-    cannot be read or written, and for .h of a range of alpha.
+    arguments: parsed command line with either file, path of a TOML file or of the netCDF of a
+        material, or name of a preset, or alpha, (low, high), for the law of every alpha between;
+        and output, path that is written; its suffix is the format.
+    Raises ParameterError for both or none of file and alpha, a range out of bounds, and a name of a
+    .h file that is no identifier of C or in capitals; FileError for a file that fails.
     """  # noqa: E501
     from ..presets import read_law_source
 
-    material = None if arguments.file is None else read_law_source(arguments.file)
+    file = arguments.file
+    if file and arguments.alpha:
+        found = f"is given beside {file}, which has a material of its own"
+        raise described_error("alpha", found, "left out")
+    material = None if file is None else read_law_source(file)
     _export(vr.tables.law(material, alpha=arguments.alpha), arguments.output)
 
 

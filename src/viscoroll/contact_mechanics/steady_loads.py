@@ -155,7 +155,8 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     of gains.
     """
     if callable(value) or isinstance(value, Schedule):
-        raise described_error(name, "varies with time", "a number, an array or a Feedback")
+        found = "is a Schedule" if isinstance(value, Schedule) else "is a function"
+        raise described_error(name, found, "a number, an array or a Feedback")
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):

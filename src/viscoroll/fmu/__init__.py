@@ -362,8 +362,8 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise described_error(
             "the law that is given",
             "is a table of the coupled solution, which an FMU cannot contain",
-            "in its place the Cylinder, whose FMU has the fast law; vr.tables.export writes the "
-            "table to .h, for C",
+            "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table to .h, "
+            "for C",
         )
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)

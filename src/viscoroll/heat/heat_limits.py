@@ -542,9 +542,9 @@ def warming(
         )
         if not found.success:
             raise described_error(
-                "temperature",
-                f"grows too fast between t = {span[0]:g} and {span[1]:g} s",
-                "bounded: reduce V or the load, or shorten t",
+                "V",
+                f"makes the temperature run away between t = {span[0]:g} and {span[1]:g} s",
+                "lower, or the load lower, or t shorter",
             )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])

@@ -508,8 +508,12 @@ def check_pairs(
     """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
-    if first.ndim != 1 or first.shape != second.shape:
-        raise shape_error(other, second.shape, f"one for each {name}, of shape {first.shape}")
+    if first.ndim != 1:
+        allowed = f"a list, as [0.1, 0.2], with one number for each {other}"
+        raise shape_error(name, first.shape, allowed)
+    if first.shape != second.shape:
+        found = f"has shape {first.shape} and {other} has shape {second.shape}"
+        raise described_error(name, found, "lists of one length")
     return first, second
 
 

@@ -196,9 +196,8 @@ class Prony(OneOrMany):
             else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
         )
         if given.shape not in ((), rest.shape):
-            raise shape_error(
-                "alpha", given.shape, f"a number, or one for each material, {rest.shape}"
-            )
+            allowed = "a number" + f", or one for each material, {rest.shape}" * (rest.ndim > 0)
+            raise shape_error("alpha", given.shape, allowed)
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():

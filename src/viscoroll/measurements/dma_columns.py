@@ -241,7 +241,8 @@ def columns_of(
                 )
             )
         elif index in owners:
-            raise FileError(table.path, f"column {heading!r}: {faults[0]}")
+            fault = f"column {heading!r}, named for {owners[index]}: {faults[0]}"
+            raise FileError(table.path, f"{fault}; you can name another column")
         else:
             others[heading or f"column {index}"] = faults[0] if faults else ""
     return columns, others

@@ -115,8 +115,8 @@ class Record:
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
             raise shape_error(self.label(self.QUANTITIES[0]), shape, "one value for each point")
         if 0 in shape:
-            first = self.label(self.COORDINATES[0])
-            raise described_error(first, "is empty", "at least one number")
+            empty = next(name for name, array in arrays.items() if not array.size)
+            raise described_error(self.label(empty), "is empty", "at least one number")
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
         # by ``vars``, as the class is frozen

@@ -117,6 +117,7 @@ def read_table(
     decimal: str | None = None,
     encoding: str | None = None,
     is_title: Callable[[str], bool] = lambda text: False,
+    footers: bool = True,
 ) -> Table:
     """Read the table of a text file, which may have a preamble, comments, and several tables with
     the same headings.
@@ -139,6 +140,7 @@ def read_table(
     is_title : a function of the text of a line that returns whether the line may stand between
         rows, as one that states the temperature of those below; lines with two numbers and more in
         cells of their own are rows all the same.
+    footers : whether lines below the last row may be other than rows; False: they are refused.
 
     Returns
     -------
@@ -173,6 +175,7 @@ def read_table(
         separator=separator,
         is_heading_line=is_heading_line,
         is_title=is_title,
+        footers=footers,
     )
     heads = layout.heads()
     parts = [layout.part(*ends) for ends in zip(heads, [*heads[1:], len(lines)], strict=True)]
@@ -210,7 +213,7 @@ class _Layout:
     path : path of the file.
     lines : lines of the file with their cells.
     separator : separator of the cells, a key of ``SEPARATORS``.
-    is_heading_line, is_title : as in :func:`read_table`.
+    is_heading_line, is_title, footers : as in :func:`read_table`.
     width : most frequent number of cells of rows of numbers.
     cut : words on the separator, for messages.
     """
@@ -220,6 +223,7 @@ class _Layout:
     separator: str
     is_heading_line: Callable[[list[str]], bool]
     is_title: Callable[[str], bool]
+    footers: bool
 
     def __post_init__(self) -> None:
         """Set ``width``, the most frequent number of cells of rows of numbers, and ``cut``, the
@@ -338,14 +342,14 @@ class _Layout:
             for row in body[first:]
             if row.numeric or not (row.comment or self.is_title(row.text))
         ]
-        while len(rows) > 1 and not self.is_row(rows[-1]):  # titles of the next table, or a footer
+        # titles of the next table, or a footer
+        while self.footers and len(rows) > 1 and not self.is_row(rows[-1]):
             rows.pop()
         for row in rows:
             if not row.numeric:
-                advice = (
-                    "remove it or begin it with #; a temperature of the rows below is "
-                    "written 'Temperature 20 °C'"
-                )
+                advice = "remove it or begin it with #"
+                if self.footers:
+                    advice += "; a temperature of the rows below is written 'Temperature 20 °C'"
                 raise self.fault(row, f"is not a row of numbers: {advice}")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
@@ -424,13 +428,14 @@ def named_table(
     encoding : name of the encoding, as Python calls it; None: UTF-16 by the first bytes, else the
         first of UTF-8, cp1252 and Latin-1 that fits.
     Returns the :class:`Table`; raises the errors of :func:`read_table`, and none for names that are
-    missing.
+    missing.  A line below the last row that is no row is an error too.
     """
     return read_table(
         path,
         lambda cells: any(_is_named(cell, name) for name in names for cell in cells if cell),
         decimal=decimal,
         encoding=encoding,
+        footers=False,
     )
 
 

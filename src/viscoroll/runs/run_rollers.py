@@ -202,8 +202,18 @@ def _warm_bodies(
             )
     given = {name: heat[name] for name in ("ambient", "conductance")}
     found = Cylinder(**numbers, **bodies).temperature(speed, **given)
-    for reason in filter(None, np.ravel(found.reason)):
-        raise ParameterError("ambient", given["ambient"], "another", reason)
+    for n, reason in enumerate(np.ravel(found.reason)):
+        if reason:
+            shape = np.shape(found.reason)
+            theta, V = (np.broadcast_to(each, shape).flat[n] for each in (heat["ambient"], speed))
+            text = f"= {theta:g} gives no allowed temperature at V = {V:g} m/s ({reason})"
+            # a frequency outside of the data may be too high or too low
+            allowed = (
+                "another, or another speed"
+                if "band" in reason
+                else "lower, or speed or load lower, or conductance higher"
+            )
+            raise described_error("ambient", text, allowed)
     # the coldest equilibrium, which a roller takes from cold
     theta = found.temperature[..., 0]
     warm = dict(bodies)

@@ -375,7 +375,7 @@ def _check_inputs(run: Run) -> None:
             raise section_error(run.path, number.section, number.key, problem) from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
-        _check_motions(run, values, " in every draw: truncate so that it is")
+        _check_motions(run, values, "; some draws do this: truncate them")
 
 
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:

@@ -422,7 +422,7 @@ def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
     """
     count = check_integer("n", count, 1)
     seed = check_integer("seed", seed, 0)
-    source = table.encoding.get("source", "table")
+    source = table.encoding.get("source", "the dataset")
     if not is_law(table):
         return _check_grid(table, count, seed, source)
     content = dataset_content(table)

@@ -110,8 +110,8 @@ def check_grid(table: Any, path: Any) -> None:
     if str(about.get(KIND)) != GRID:
         raise FileError(
             path,
-            "is not a table of viscoroll: vr.tables.build makes a grid, vr.tables.law a law, and "
-            "vr.tables.save writes either",
+            f"is not a table of viscoroll (it has no attribute {KIND} = {GRID!r}): vr.tables.build "
+            "makes a grid, vr.tables.law a law, and vr.tables.save writes either",
         )
     version = about.get("schema_version")
     major = SCHEMA_VERSION.partition(".")[0]
@@ -367,7 +367,7 @@ class Interpolant:
         Raises FileError if it is not a grid, is incomplete or in other units; ParameterError for
         its mu and load.
         """
-        check_grid(table, getattr(table, "encoding", {}).get("source", "table"))
+        check_grid(table, getattr(table, "encoding", {}).get("source", "the dataset"))
         self._table = table
         self._axes = axes_of(table)
         self._linear = linear
