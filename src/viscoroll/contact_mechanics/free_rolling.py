@@ -9,7 +9,7 @@ for g = 1.
 
 In slow changes of speed the moment is M(V) + N(V) dV/dt, where N acts as an added mass.  Divided by
 the mass it is the unsteadiness g |N(V)|, which is about the relative error of V in a motion in
-which it was no larger before (docs/validity.md).
+which it was no larger before (docs/validity_low_speed.md).
 
 The own time of a material is a unit of time in which its slow time
 (:attr:`viscoroll.Prony.slow_time`) is near 1; u and g are in that unit.
@@ -39,7 +39,7 @@ _PER_OCTAVE = 16
 #: limits to 1e-6.
 _MARGIN = 20
 #: Length in half contact lengths at rest over which a mode remembers the indentation, divided by 2
-#: u T of the mode; measured with a transient solver (docs/validity.md).
+#: u T of the mode; measured with a transient solver (docs/validity_low_speed.md).
 _MEMORY = 0.681
 #: Largest such length divided by twice the coasting distance; measured likewise.
 _SHORT = 4.84

@@ -47,7 +47,7 @@ _LARGEST_M = 0.25
 _SLOW_PART = 0.1
 #: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, from which on that part is
 #: below _SLOW_PART for every material: (kappa V)^2 |N| is at most 1.35/16 of 1 - 1/alpha
-#: (docs/validity.md), and the distance grows at least in proportion to V.
+#: (docs/validity_low_speed.md), and the distance grows at least in proportion to V.
 _FAST = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
 #: kappa V, dimensionless, from which on (kappa V)^2 N of one relaxation time is at least 0.6/16 of
 #: 1 - 1/alpha; at lower speeds N passes 0.  The least found is 0.64/16, at this speed and alpha
