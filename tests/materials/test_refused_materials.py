@@ -108,6 +108,12 @@ REFUSED = [
             "line 4 has 1 cells": lambda: read_column(
                 file("V0;mu\n1;0.1\n2;0.2\n3", "starts.csv"), "V0", "1"
             ),
+        },
+        vr.FileError,
+    ),
+    *each(
+        None,
+        {
             "dimension of 1": lambda: read_column(
                 file("V0 [km/h];mu\n0,36;0,1", "starts.csv"), "V0", "1"
             ),
@@ -199,7 +205,7 @@ REFUSED = [
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
             "resistance: V is empty: must be at least one number": lambda: vr.Resistance([], []),
-            "F is empty: must be at least one number": lambda: vr.Resistance([1.0], []),
+            "F is empty: must be at least one number": lambda: vr.Resistance([1.0], F=[]),
             "cylinder has other materials: must be a Cylinder with material=": [
                 lambda: vr.fit_prony(*DMA).validity(ROLLER, 1.0),
                 lambda: vr.fit_prony(*DMA).validity(None, 1.0),

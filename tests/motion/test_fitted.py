@@ -66,7 +66,7 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     values as it may.
     """
     monkeypatch.setattr(drive_pieces, "MOST", 5_000)
-    words = "torque = a function that piecewise polynomials cannot approximate near t = "
+    words = "torque is a function that piecewise polynomials cannot approximate near t = "
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
         refused(partial(vr.roll, ROLLER, 0.5, 0.5, END, torque=function), words, "Schedule")

@@ -111,12 +111,12 @@ class Record:
         for name, value in (sigma := self._sigmas()).items():
             label = f"sigma of {name}"
             arrays[label] = check_array(self.label(label), value, unit=self.unit(name), above=0.0)
+        for name, array in arrays.items():
+            if not np.size(array):
+                raise described_error(self.label(name), "is empty", "at least one number")
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
             raise shape_error(self.label(self.QUANTITIES[0]), shape, "one value for each point")
-        if 0 in shape:
-            empty = next(name for name, array in arrays.items() if not array.size)
-            raise described_error(self.label(empty), "is empty", "at least one number")
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
         # by ``vars``, as the class is frozen
