@@ -93,8 +93,11 @@ ROLLS = each(
             "V": lambda t: float(t > 0.3),
             "t": 8.0,
         },
-        "roll computes one motion, but a load or a gain has shape (3,): use ensemble": {
+        "one motion, but a gain, V or omega of a Feedback, has shape (3,): use ensemble": {
             "torque": vr.Feedback(0.01, omega=[0.0, -0.1, 0.1])
+        },
+        "one motion, but torque has shape (2,): use ensemble": {
+            "torque": vr.Schedule([0.0, 1.0], [[0.0, 1.0], [0.0, 2.0]])
         },
         "torque must be a function of t alone, but this function has the parameters (t, V, w): for "
         "feedback": {"torque": lambda t, V, w: -V},
@@ -123,6 +126,19 @@ ENSEMBLES = each(
         "coordinates": {"V0": LABELLED, "omega0": LABELLED.assign_coords(run=["a", "c"])},
     },
     **FREE,
+)
+#: numbers of a motion in its own unit of speed
+OF_RADII = each(
+    vr.ensemble,
+    {
+        "V0 = 1 m s-1 of motion 1: must be None, or 3 m s-1, the prescribed V": {"V": [1.0, 3.0]},
+        "V0 = 1e+121 m s-1 of motion 1: must be at most 1.": {"V0": [1.0, 1e121]},
+        "R |omega0|) = 9.99989e-321 m s-1 of motion 0: must be 0, or": {"V0": [1e-320, 1.0]},
+    },
+    roller=PAPER_CYLINDER.replace(R=[0.1, 0.2]),
+    V0=1.0,
+    omega0=0.0,
+    t=1.0,
 )
 DRIVES = each(vr.Schedule, {"shapes of a Schedule = times (), values ()": (0.0, 1.0)})
 IN_SI = each(
@@ -257,6 +273,7 @@ OTHERS = each(
         *ENSEMBLES,
         *DRIVES,
         *IN_SI,
+        *OF_RADII,
         *STEADY,
         *SCENES,
         *CYLINDERS,

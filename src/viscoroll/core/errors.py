@@ -74,9 +74,9 @@ class ParameterError(ViscorollError, ValueError):
     alpha 0.5
     """
 
-    #: Sentence with a place {} for each of its dimensionless numbers, their quantity, and their
-    #: values, which a call with a cylinder tells in SI units; () without.
-    dimensionless: tuple[Any, ...] = ()
+    #: Function of ``scale`` that returns this error with its dimensionless numbers in SI units, for
+    #: a call with a cylinder; None without such numbers.
+    dimensionless: Any = None
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name = name

@@ -330,8 +330,9 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
         differ = np.abs(given - start) > _START * scale
         if differ.any():
             text = f"{name}0 = {{}}: must be None, or {{}}, the prescribed {name} at t = 0"
+            n = int(differ.argmax())
             numbers = np.stack(np.broadcast_arrays(given, start))[:, differ][:, 0]
-            raise dimensionless_error(f"{name}0", text, name, *numbers)
+            raise dimensionless_error(f"{name}0", text, name, *numbers, motion=n)
     if start.size > 1:
         return start
     return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])
@@ -403,9 +404,10 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # in pieces without length
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
     if jumps.any():
+        n = int(jumps.any(axis=1).argmax())
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
         text = f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed"
-        raise dimensionless_error(name, text, "t", when)
+        raise dimensionless_error(name, text, "t", when, motion=n)
     terms = np.zeros_like(speed.terms)
     terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1])
     terms *= _dx_dt(lengths)[..., None]

@@ -4,6 +4,7 @@ gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -140,24 +141,30 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     omega = check_array("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):
-        fastest = max(extent(array), key=abs) if array.size else 0.0
-        if abs(fastest) > high:
+        if array.size and max(map(abs, extent(array))) > high:
+            n = int(np.abs(array).argmax())
             text = f"{name} = {{}}: must be at most {{}} in magnitude"
-            raise dimensionless_error(name, text, name, fastest, high)
+            raise dimensionless_error(name, text, name, array.flat[n], high, motion=n)
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer(
         (V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16
     ):
         larger = np.maximum(np.abs(V_part), np.abs(omega_part))
-        tiny = larger[(larger > 0.0) & (larger < low)]
-        if tiny.size:
+        if ((larger > 0.0) & (larger < low)).any():
+            larger = np.maximum(np.abs(V), np.abs(omega))
+            n = int(np.where(larger > 0.0, larger, np.inf).argmin())
             text = "max(|V0|, R |omega0|) = {}: must be 0, or at least {}"
-            raise dimensionless_error("V0, omega0", text, "V0", tiny.min(), low)
+            raise dimensionless_error("V0, omega0", text, "V0", larger.flat[n], low, motion=n)
     return V, omega
 
 
 def dimensionless_error(
-    name: str, text: str, quantity: str, *numbers: float, scale: Scale = DIMENSIONLESS
+    name: str,
+    text: str,
+    quantity: str,
+    *numbers: float,
+    motion: int = 0,
+    scale: Scale = DIMENSIONLESS,
 ) -> ParameterError:
     """Return the error, not raised, of a sentence that states dimensionless numbers.
 
@@ -165,16 +172,19 @@ def dimensionless_error(
     text: the sentence, with a place {} for each number.
     quantity: the quantity of these numbers.
     numbers: their values; the first is the one that was found.
+    motion: index of the motion of these numbers.
     scale: :class:`Scale` of the roller, in whose unit the numbers are told.  Where it differs
-    between motions they are told as they are, and the sentence ends with "(dimensionless)".
+    between motions it is that of ``motion``, which the sentence names.
     """
-    if np.ndim(scale[quantity]):
-        return dimensionless_error(name, f"{text} (dimensionless)", quantity, *numbers)
-    values = [scale[quantity] * x for x in numbers]
+    values = [np.take(scale[quantity], motion, mode="clip") * x for x in numbers]
     unit = scale.unit(quantity) if scale.si else ""
-    sentence = text.format(*(f"{digits_beside(x, *values)} {unit}".rstrip() for x in values))
+    of_many = f" of motion {motion}:" if np.ndim(scale[quantity]) else ":"
+    told = (f"{digits_beside(x, *values)} {unit}".rstrip() for x in values)
+    sentence = text.replace(":", of_many, 1).format(*told)
     error = ParameterError(name, values[0], sentence.partition(": must be ")[2], sentence)
-    error.dimensionless = (text, quantity, *numbers)
+    error.dimensionless = partial(
+        dimensionless_error, name, text, quantity, *numbers, motion=motion
+    )
     return error
 
 
@@ -187,7 +197,7 @@ def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
     """
     if not (scale.si and error.dimensionless):
         return error
-    return dimensionless_error(error.name, *error.dimensionless, scale=scale)
+    return error.dimensionless(scale=scale)
 
 
 # --- What drives motions, as the caller gives it ---

@@ -191,7 +191,10 @@ def make_problem(
     except ParameterError as error:
         raise with_scales(error, scale) from error
     if single and functions.counts != (1, 1):
-        require_single(**{"a load or a gain": np.empty(max(functions.counts))})
+        many = {
+            name: f.terms[:, 0, 0] for name, f in functions.functions.items() if len(f.terms) > 1
+        }
+        require_single(**many, **{"a gain, V or omega of a Feedback,": functions.gains[0]})
     return MotionProblem(
         roller=roller,
         scene=scene,
