@@ -290,3 +290,12 @@ def test_refused(call, words, error):
 
 def test_errors_of_input_are_value_errors():
     assert issubclass(vr.ParameterError, ValueError)
+
+
+@pytest.mark.parametrize(
+    ("roller", "name"), [(PAPER.replace(alpha=[2.0, 3.0]), "alpha"), (MANY_SCENES, "material")]
+)
+def test_an_error_has_the_name_of_the_argument(roller, name):
+    with pytest.raises(vr.ParameterError) as raised:
+        vr.contact(roller, 0.5, delta=0.01, method="coupled")
+    assert raised.value.name == name

@@ -27,7 +27,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import exp1, expi
 
-from ..core import ConvergenceError, Floats, shape_error
+from ..core import ConvergenceError, Floats, ParameterError
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws import layer_nodes
@@ -348,11 +348,11 @@ class CoupledPair(NamedTuple):
         """
         material = scene.material
         if np.size(scene.alpha) != 1 or (material is not None and material.shape):
-            raise shape_error(
-                "the material (alpha)",
-                np.shape(scene.alpha),
-                "a single one with method='coupled': make a call for each",
-            )
+            shape = np.shape(scene.alpha)
+            allowed = "a single one with method='coupled': make a call for each"
+            sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
+            name = "alpha" if material is None else "material"
+            raise ParameterError(name, shape, allowed, sentence)
         if material is None:
             material = series_of_alpha(float(np.asarray(scene.alpha).item()))
         if isinstance(material, Bodies):

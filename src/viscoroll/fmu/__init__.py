@@ -35,9 +35,9 @@ from .. import __version__, tables
 from ..core import (
     FileError,
     MissingDependencyError,
+    ParameterError,
     check_choice,
     check_integer,
-    described_error,
     dimension_powers,
     import_extra,
     replace_file,
@@ -359,12 +359,11 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
-        raise described_error(
-            "the law that is given",
-            "is a table of the coupled solution, which an FMU cannot contain",
-            "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table to .h, "
-            "for C",
-        )
+        found = "a table of the coupled solution, which an FMU cannot contain"
+        allowed = "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table to "
+        allowed += ".h, for C"
+        sentence = f"the law that is given is {found}: must be {allowed}"
+        raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
     l0 = _contact_length_of_cover(table)
