@@ -164,9 +164,9 @@ def test_a_wrong_model_is_told_before_any_interval():
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
     assert lines[1].startswith(
-        "  ! the residuals of M of resistance are autocorrelated (lag-1 correlation 0.8"
+        "  ! the residuals of M of resistance are autocorrelated: neighbours correlate by 0.8"
     )
-    assert "the intervals are meaningless" in lines[1]
+    assert "the intervals mean nothing" in lines[1]
 
 
 def test_sigma_that_is_not_given_is_estimated():

@@ -185,7 +185,7 @@ def fit_prony(
                 raise described_error(
                     name,
                     "is given",
-                    "left out: the result of read_dma contains it; write modes=5 for a "
+                    "left out, since the result of read_dma contains it; write modes=5 for a "
                     "number of modes",
                 )
         if mode not in (None, record.mode):
@@ -317,7 +317,7 @@ def fit_relaxation(
             raise described_error(
                 "relaxation or mode",
                 "is given",
-                "left out: the result of read_relaxation contains both; write modes=5 for a "
+                "left out, since the result of read_relaxation contains both; write modes=5 for a "
                 "number of modes",
             )
         mode = _mode(t.mode)
@@ -382,9 +382,11 @@ def _fit_series(
     (low, high) = curve.band
     data = thinned(curve)
     if high > MOST_SPREAD * low:
-        found = f"extends from {data[0][0]:g} to {data[0][-1]:g}"
-        allowed = f"within a factor of {MOST_SPREAD:g}: leave the outer points out"
-        raise described_error(data._fields[0], found, allowed)
+        raise described_error(
+            data._fields[0],
+            f"extends from {data[0][0]:g} to {data[0][-1]:g}",
+            f"within a factor of {MOST_SPREAD:g}; leave the outer points out",
+        )
     spectrum, grid, reached = fewest_modes(data, target, modes)
     T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0  # the longest comes first
     prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)
@@ -484,7 +486,7 @@ def fit_at_strain(
             return fit
     raise ConvergenceError(
         "fit_at_strain: the strain of the contact does not converge, its last two values are "
-        f"{last:.6g} and {strain:.6g}: fit the record of one strain by fit_prony"
+        f"{last:.6g} and {strain:.6g}; fit the record of one strain by fit_prony"
     )
 
 
@@ -503,7 +505,7 @@ def _sets_of(records: Sequence[DynamicModuli]) -> list[Any]:
             raise described_error(
                 "records",
                 f"have one without strain ({record.source or 'without source'})",
-                "with the strain of each point: add its column to the file, or fit_prony it",
+                "records with a column of strain and its unit; for others call fit_prony(record)",
             )
         order = np.argsort(strains := np.asarray(record.strain), kind="stable")
         # cut behind each strain that the next one exceeds by more than the gap

@@ -306,7 +306,7 @@ def fewest_modes(
         raise described_error(
             name,
             f"has no plateau at {side} ({data[1][n]:g} at {x} = {data[0][n]:g})",
-            "that of a solid, whose long-time modulus is positive",
+            "that of a solid, which tends to a constant > 0; add or correct points there",
         )
     limit = _NEAR_BEST * min(_size(data, spectrum) for spectrum, _ in starts)
     reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)
