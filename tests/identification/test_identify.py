@@ -144,12 +144,12 @@ def test_a_product_that_a_range_limits_is_told():
     )
     said = str(fit)
     assert (
-        "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end by the range of T_ref) "
-        "and" in said
+        "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end set by the range of "
+        "T_ref) and" in said
     )
     assert (
-        "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are bounded "
-        "within the ranges" in said
+        "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends set by the range of T_ref) are "
+        "determined within the ranges given" in said
     )
 
 

@@ -61,7 +61,7 @@ def test_relaxation_is_read(text, tmp_path):
         ),
         (
             "Time [Hz];E(t) [MPa]\n1;2\n2;1\n",
-            ["unit 'Hz' is not a unit of time: give the unit", "units={'time': 's'}"],
+            ["unit 'Hz' is not a unit of time: give the unit of its numbers, as units={'time'"],
         ),
         (
             "Time [s];E(t) [MPa]\n0;2\n2;1\n",

@@ -144,7 +144,7 @@ def _parts(word: str) -> list[str]:
 
 #: degrees; temperatures without a unit that go above it are taken to be kelvins, in which DMA
 #: seldom goes below
-_KELVIN = 200.0
+KELVIN = 200.0
 #: quantity -> bounds of its numbers, and these in words
 _RANGES = {
     "phase angle": (-math.inf, 0.5 * math.pi, "below 90 degrees"),
@@ -303,8 +303,12 @@ def _index(table: Table, heading: str) -> int:
     """
     found = find_column(table, heading)
     if found is None:
-        known = f"{', '.join(map(repr, table.headings))}{suggestion(str(heading), table.headings)}"
-        raise described_error("columns", f"names {heading!r:.60}", f"one of the headings {known}")
+        raise described_error(
+            "columns",
+            f"names {heading!r:.60}",
+            f"one of the headings {', '.join(map(repr, table.headings))}"
+            f"{suggestion(str(heading), table.headings)}",
+        )
     return found
 
 
@@ -368,7 +372,7 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     values, half = table.numbers(column.position)
     # a phase angle of rubber in degrees goes above pi/2
     open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
-    if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
+    if not column.stated and (open_unit or (name == "temperature" and values.max() > KELVIN)):
         raise FileError(
             table.path,
             f"column {column.heading!r} has no unit, which its largest value {values.max():g} does "

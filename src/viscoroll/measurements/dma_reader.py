@@ -345,9 +345,10 @@ def read_dma(
         if n < table.starts[0] and _TEMPERATURE.search(text)
     ]
     if above and temperature is None:
-        stated = f"lines above the headings, {quoted(above)}"
-        advice = "give temperature= to fit_prony (in a shell: --temperature)"
-        notes.append(f"no temperature is read from {stated}: {advice}")
+        notes.append(
+            f"no temperature is read from lines above the headings, {quoted(above)}: give "
+            "temperature= to fit_prony (in a shell: --temperature)"
+        )
     _warn_of_per_cent(table, taken)
     record = DynamicModuli(
         omega=omega,

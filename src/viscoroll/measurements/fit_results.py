@@ -363,9 +363,13 @@ class SeriesFit(Result):
             name: (x, values, {"units": "unit of the data"}) for name, values in of_data
         }
         data |= {
-            "E": ("mode", self.prony.E, {"long_name": "strengths divided by the long-time modulus"})
+            "E": (
+                "mode",
+                self.prony.E,
+                {"long_name": "strengths divided by the long-time modulus"},
+            ),
+            "tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"}),
         }
-        data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
         about = {
             "E_long": self.E,
             "T_ref": self.T_ref,

@@ -21,6 +21,7 @@ from ..core import (
     check_choice,
     check_integer,
     check_number,
+    describe_value,
     described_error,
 )
 from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Prony, VerticalShift, check_celsius
@@ -207,13 +208,15 @@ def fit_prony(
             "given beside omega; or give a record of read_dma alone",
         )
     check_choice("on", on, "both", "storage")
+    if not (vertical_shift is None or callable(vertical_shift)):
+        check_choice("vertical_shift", vertical_shift, "entropic")
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:
-        for name, value in (
-            ("reference", reference),
-            ("shift", shift),
-            ("vertical_shift", vertical_shift),
-        ):
+        for name, value in {
+            "reference": reference,
+            "shift": shift,
+            "vertical_shift": vertical_shift,
+        }.items():
             if value is not None:
                 raise described_error(
                     name, "is given, but temperature is not", "left out, or temperature given too"
@@ -468,7 +471,7 @@ def fit_at_strain(
     The strain of the contact with the material of the fit is ``strain`` to 1e-3
     (``tests/test_heat.py``).
     """
-    sets = _sets_of([records] if isinstance(records, DynamicModuli) else records)
+    sets = _sets_of(records if isinstance(records, (list, tuple)) else [records])
     if len(sets) == 1:
         return fit_prony(sets[0], **options)
     strain = math.exp(np.mean([math.log(each.mean_strain) for each in sets]))
@@ -490,17 +493,19 @@ def fit_at_strain(
     )
 
 
-def _sets_of(records: Sequence[DynamicModuli]) -> list[Any]:
+def _sets_of(records: Sequence[Any]) -> list[Any]:
     """Divide records into records of one strain each, by rising strain.
 
     Two neighbouring strains of a record are of one set if they differ by less than a fifth.
 
     records : as in :func:`fit_at_strain`.
     Returns a list of :class:`DynamicModuli`; a record of one strain is in it as it is.
-    Raises ParameterError for a record without strain.
+    Raises ParameterError for what is no record, and for a record without strain.
     """
     found: list[Any] = []
-    for record in records:
+    for record in records or [None]:
+        if not isinstance(record, DynamicModuli):
+            raise ParameterError("records", describe_value(record), "what vr.read_dma returns")
         if record.mean_strain is None:
             raise described_error(
                 "records",

@@ -182,8 +182,10 @@ def _products(fit: Any) -> str:
     # of those that stand first in the sentence: near is False of the sure ones
     limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
     verb = "are" if " and " in (sure or near) else "is"
-    text = f"only {sure or near} {verb} {'bounded within the ranges' if limited else 'determined'}"
-    more = f"; near these values also {near}, more precisely" if sure else ", near these values"
+    text = f"only {sure or near} {verb} determined" + " within the ranges given" * limited
+    more = (
+        f"; near these values also {near}, more precisely" if sure else ", near these values only"
+    )
     return text + f"{more}{_NEAR}" * bool(near)
 
 
@@ -192,7 +194,7 @@ def _product_text(product: Any, values: dict[str, float]) -> str:
     largest absolute value first.
 
     The value is in SI units without their names, the ends of the interval are relative to it.  An
-    end that the range of an unknown limits is named, as "the lower end by the range of nu".
+    end that the range of an unknown limits is named, as "the lower end set by the range of nu".
     Exponents of equal absolute value stay in the order of the product; an exponent of 1 is not
     written.
 
@@ -209,7 +211,9 @@ def _product_text(product: Any, values: dict[str, float]) -> str:
     ends = (
         {"both ends": lower} if lower == upper else {"the lower end": lower, "the upper end": upper}
     )
-    limits = "".join(f", {end} by the range of {bounds}" for end, bounds in ends.items() if bounds)
+    limits = "".join(
+        f", {end} set by the range of {bounds}" for end, bounds in ends.items() if bounds
+    )
     return f"{text} = {product.value:.4g} (95%: {low} to {high}{limits})"
 
 
@@ -248,7 +252,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
                 "cylinder with these values, or more starts="
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
-        yield f"the best fit has {problem.names[i]} at the end of its range: extend it if possible"
+        yield f"the best fit has {problem.names[i]} at the end of its range: extend the range"
     yield from (
         f"the range given for {bound}, not the data, determines {', '.join(ends)}"
         for bound, ends in limited.items()
@@ -419,8 +423,11 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
     yield symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}"
     if fit.mode == "shear":
-        factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
-        yield "shear", f"shear data: material(nu=) uses E = 2 (1 + nu) G, {factor}"
+        yield (
+            "shear",
+            f"shear data: material(nu=) uses E = 2 (1 + nu) G, {2.0 * (1.0 + _NU):.4g} G at nu = "
+            f"{_NU:g}",
+        )
     yield "alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)"
     yield "T_ref", f"{fit.T_ref:.6g} s (the longest relaxation time)"
     if fit.temperature is not None:
@@ -519,11 +526,10 @@ def _kramers_kronig(median: float, symbol: str) -> str:
     if np.isnan(median):
         return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
     text = f"is {median:.2f} times the value from the slope of {symbol}' (Kramers-Kronig, median)"
-    sound = _CONSISTENT[0] <= median <= _CONSISTENT[1]
-    return text + (
-        ""
-        if sound
-        else ": storage and loss modulus are inconsistent, or relaxation times are far apart"
+    return (
+        text
+        + ": storage and loss modulus are inconsistent, or relaxation times are far apart"
+        * (not _CONSISTENT[0] <= median <= _CONSISTENT[1])
     )
 
 

@@ -172,11 +172,12 @@ def identify(
     # a standard deviation that is estimated needs one degree of freedom
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
-        allowed = (
-            f"at most {most}, since the number of points is {problem.points}: give more "
-            "points, fewer unknowns, or sigma, whose estimate takes one point"
+        raise ParameterError(
+            "number of unknowns",
+            len(unknowns),
+            f"at most {most}, since the number of points is {problem.points}: give more points, "
+            "fewer unknowns, or sigma, whose estimate takes one point",
         )
-        raise ParameterError("number of unknowns", len(unknowns), allowed)
     return Identification(
         problem,
         _find_minima(
@@ -401,8 +402,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     ------
     FileError
         A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with
-        its line; a [scene] in place of a [cylinder]; no [unknown] or no [[data]].  A file of data
-        that cannot be read, or without a column.
+        its line; a [scene]; no [unknown] or [[data]]; data that cannot be read, or lack a column.
 
     Warns
     -----
@@ -528,12 +528,12 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     ]
     if others and not present.keys() & set(kind.QUANTITIES):
         name = kind.QUANTITIES[0]
-        problem = f"has no column {' or '.join(kind.QUANTITIES)}, only {', '.join(others)}"
-        advice = (
-            f"if one of these is {name}, write columns = {{ {name} = 'HEADING' }} in [[data]]; if "
-            "nothing was measured (a plan), remove these columns"
+        raise FileError(
+            path,
+            f"has no column {' or '.join(kind.QUANTITIES)}, only {', '.join(others)}: if one of "
+            f"these is {name}, write columns = {{ {name} = 'HEADING' }} in [[data]]; if nothing "
+            "was measured (a plan), remove these columns",
         )
-        raise FileError(path, f"{problem}: {advice}")
     if others:
         warn_of_model(f"{path.name}: unused columns: {', '.join(others)}")
     found = {}

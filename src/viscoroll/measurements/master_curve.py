@@ -344,7 +344,7 @@ def master_curve(
         b_T = [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
         whole[1:] = [each / np.array(b_T)[sets.of_point] for each in whole[1:]]
     mismatch = freedom = np.full(temperatures.size - 1, math.nan)
-    if callable(shift):
+    if callable(shift) and not isinstance(shift, type):
         if base is None:
             base = default_reference(temperatures, [getattr(shift, "T0", math.nan)])
         factor = np.array([relative_shift(shift, T, base) for T in temperatures.tolist()])

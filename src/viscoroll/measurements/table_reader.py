@@ -25,6 +25,7 @@ from ..core import (
 )
 from .dma_columns import (
     BARE,
+    KELVIN,
     OF_SHEAR,
     QUANTITIES,
     UNITS,
@@ -147,8 +148,6 @@ _LIKE_TEMPERATURE = re.compile(
 _SCATTER = 0.1
 #: base of logarithms -> their name
 _LOGARITHMS = {math.e: "ln", 2.0: "log2", 10.0: "log10"}
-#: degrees; numbers without a unit above it may be kelvins
-_KELVIN = 200.0
 
 
 class Understood(NamedTuple):
@@ -249,12 +248,12 @@ def understand(
     )
     if table.without_headings and not named:
         if len(table.headings) != len(bare):
-            called = ", ".join(map(repr, table.headings))
-            problem = (
+            raise FileError(
+                path,
                 f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
-                f"({', '.join(bare)})"
+                f"({', '.join(bare)}); these are called {', '.join(map(repr, table.headings))}: "
+                f"{_NAME_THEM[test]}",
             )
-            raise FileError(path, f"{problem}; these are called {called}: {_NAME_THEM[test]}")
         named = dict(zip(bare, table.headings, strict=True))
     found, others = columns_of(table, test, named=named, overruling=overruling, defaults=defaults)
     check_names("units", overruling, [column.name for column in found], "a quantity of the file")
@@ -410,12 +409,13 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     holds = np.ones(at.size, bool)
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
-    problem = f"an earlier row has the same {name} and another modulus"
     advice = "if temperatures differ, add a column of them; if strains differ, keep one strain"
-    table.require(holds, f"{problem}: {advice}")
+    table.require(holds, f"an earlier row has the same {name} and another modulus: {advice}")
     if change.max(initial=0.0) > _SCATTER:
-        text = f"rows of one {name} have moduli that differ by {np.expm1(change.max()):.0%}"
-        warn_of_model(f"{table.path}: {text}, and are taken as repetitions of a test: {advice}")
+        warn_of_model(
+            f"{table.path}: rows of one {name} have moduli that differ by "
+            f"{np.expm1(change.max()):.0%}, and are taken as repetitions of a test: {advice}"
+        )
 
 
 def temperatures_of_lines(table: Table) -> Floats | None:
@@ -474,7 +474,7 @@ def _celsius(number: str, unit: str, in_doubt: bool) -> float:
     in_doubt : whether the text around it makes it so.
     """
     value = float(number.replace(",", "."))
-    if in_doubt or (not unit and value > _KELVIN):
+    if in_doubt or (not unit and value > KELVIN):
         return np.nan
     factor, offset = conversion(unit or "degC", "degC")
     return factor * value + offset
@@ -499,9 +499,12 @@ def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
                 for each in ways
                 if each.unit not in NO_UNIT and (each.sure or "°" in each.unit)
             ]
-            hint = _LIKE_TEMPERATURE.match(heading) is not None
             # kelvins of one unit of the column; without a unit those of degrees Celsius
-            factor = max(map(_kelvins, units)) if units else float(hint)
+            factor = (
+                max(map(_kelvins, units))
+                if units
+                else float(bool(_LIKE_TEMPERATURE.match(heading)))
+            )
             spread = np.inf
             with suppress(FileError):
                 spread = factor * np.ptp(table.numbers(index).values)

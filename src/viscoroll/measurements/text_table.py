@@ -190,11 +190,10 @@ def read_table(
     names, units, (first, *_) = parts[0]
     starts = [rows[0].number for *_, rows in parts]
     if any(part[:2] != (names, units) for part in parts):
-        found = ", ".join(map(str, starts))
         raise FileError(
             path,
             f"has {len(parts)} tables with different headings (their rows begin in lines "
-            f"{found}): keep one of them in the file",
+            f"{', '.join(map(str, starts))}): keep one of them in the file",
         )
     rows = [row for *_, rows in parts for row in rows]
     mark = decimal or decimal_mark(
@@ -492,8 +491,11 @@ def missing_column(table: Table, name: str, advice: str = "") -> FileError:
     advice: words with their punctuation that end the message, as ": name one of these"; "" for
     none.
     """
-    found = f"{', '.join(map(repr, table.headings))}{suggestion(name, table.headings)}"
-    return FileError(table.path, f"has no column {name!r}; its columns are {found}{advice}")
+    return FileError(
+        table.path,
+        f"has no column {name!r}; its columns are {', '.join(map(repr, table.headings))}"
+        f"{suggestion(name, table.headings)}{advice}",
+    )
 
 
 def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
