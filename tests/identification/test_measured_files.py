@@ -24,7 +24,7 @@ def test_the_program_reports(folder, capsys):
     """The case of the suffix does not matter."""
     given = ["identify", str(folder / "data.toml"), "--starts", "1", "-o"]
     assert cli.main([*given, str(folder / "fit.json"), "--plot", str(folder / "fit.png")]) == 0
-    assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2 ")
+    assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2, ")
     found = json.loads((folder / "fit.json").read_text())
     assert found["unknowns"]["T_ref"]["interval"][0] < 1e-3
     assert found["does_not_act"] == []
