@@ -226,7 +226,7 @@ REFUSED = [
                 "unknown": {"E": (1e6, 2e6)}
             },
             "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
-            "more points, or": {"data": vr.Resistance(0.1, 0.1)},
+            "more points, fewer unknowns": {"data": vr.Resistance(0.1, 0.1)},
             "name = 'a': must be different for each record": {
                 "data": [vr.Resistance(HUMP, sigma=0.1, name="a")] * 2
             },
