@@ -208,8 +208,10 @@ def fit_prony(
             "given beside omega; or give a record of read_dma alone",
         )
     check_choice("on", on, "both", "storage")
-    if not (vertical_shift is None or callable(vertical_shift)):
-        check_choice("vertical_shift", vertical_shift, "entropic")
+    if not (vertical_shift in (None, "entropic") or callable(vertical_shift)):
+        raise ParameterError(
+            "vertical_shift", describe_value(vertical_shift), "'entropic' or a function"
+        )
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:
         for name, value in {
@@ -382,7 +384,7 @@ def _fit_series(
     """
     target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
-    (low, high) = curve.band
+    low, high = curve.band
     data = thinned(curve)
     if high > MOST_SPREAD * low:
         raise described_error(

@@ -499,8 +499,8 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     Returns the :class:`AdmissibleSpectra`.
     Raises RuntimeError as :func:`on_times` does.
     """
-    (low, high) = data.band
-    (slow, fast) = Measured(*data.band, 0.0).transit_band
+    low, high = data.band
+    slow, fast = Measured(*data.band, 0.0).transit_band
     n = 2 + int(_SPEEDS * math.log10(fast / slow)) if fit.tau.size and slow < fast else 0
     rate = np.geomspace(slow, fast, n)
     T_ref = float(np.max(fit.tau)) if fit.tau.size else 1.0
