@@ -300,11 +300,10 @@ class Resistance(Record):
                 raise described_error(self.label(name), problem, allowed)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Predict rolling moment and pulling force of free rolling, the torque of the bearing
-        included.
+        """Predict rolling moment and pulling force, the torque of the bearing included.
 
-        The moment is M of the contact at delta = 0, plus sign(V) brake + drag V/R, and the force is
-        this moment over R; both are 0 at V = 0.
+        The force is that of :func:`viscoroll.steady` with the bearing's torque, sign(V) brake +
+        drag V/R; the moment is force times R.  Both are NaN where friction does not turn it.
 
         Parameters
         ----------
@@ -327,7 +326,7 @@ class Resistance(Record):
         Warns
         -----
         ModelWarning
-            As :func:`viscoroll.contact`; a fit suppresses it.
+            As :func:`viscoroll.steady`; a fit suppresses it.
 
         Examples
         --------
@@ -343,9 +342,10 @@ class Resistance(Record):
         V = np.asarray(self.V)
         brake = values.get("brake", 0.0)
         drag = values.get("drag", 0.0)
-        M = cylinder.contact(V, delta=0.0, fields="M").M
-        M = M + np.sign(V) * brake + drag * V / cylinder.R
-        return {"M": M, "F": M / cylinder.R}
+        force = cylinder.steady(V=V, torque=-np.sign(V) * brake - drag * V / cylinder.R).force
+        # one equilibrium a speed; none where the bearing takes more torque than friction
+        F = force.reshape(V.shape) if force.size else np.full(V.shape, np.nan)
+        return {"M": F * cylinder.R, "F": F}
 
 
 @dataclass(frozen=True, eq=False)
