@@ -144,12 +144,12 @@ def test_a_product_that_a_range_limits_is_told():
     )
     said = str(fit)
     assert (
-        "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end by the range of T_ref) "
-        "and" in said
+        "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end set by the range of "
+        "T_ref) and" in said
     )
     assert (
-        "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are bounded "
-        "within the ranges" in said
+        "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends set by the range of T_ref) are "
+        "determined within the ranges given" in said
     )
 
 
@@ -164,9 +164,9 @@ def test_a_wrong_model_is_told_before_any_interval():
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
     assert lines[1].startswith(
-        "  ! the residuals of M of resistance are autocorrelated (lag-1 correlation 0.8"
+        "  ! the residuals of M of resistance are autocorrelated: neighbours correlate by 0.8"
     )
-    assert "the intervals are meaningless" in lines[1]
+    assert "the intervals mean nothing" in lines[1]
 
 
 def test_sigma_that_is_not_given_is_estimated():

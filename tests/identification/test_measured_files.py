@@ -24,7 +24,7 @@ def test_the_program_reports(folder, capsys):
     """The case of the suffix does not matter."""
     given = ["identify", str(folder / "data.toml"), "--starts", "1", "-o"]
     assert cli.main([*given, str(folder / "fit.json"), "--plot", str(folder / "fit.png")]) == 0
-    assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2 ")
+    assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2, ")
     found = json.loads((folder / "fit.json").read_text())
     assert found["unknowns"]["T_ref"]["interval"][0] < 1e-3
     assert found["does_not_act"] == []
@@ -55,7 +55,7 @@ def test_a_factor_in_a_heading_is_no_unit(here, heading):
     """Which side it multiplies cannot be told; the advice, followed, gives the unit."""
     text = f"{heading};M [N m/m]\n72;0.2\n720;0.3\n"
     more = f'columns = {{ V = "{heading}" }}\n'
-    with pytest.raises(vr.FileError, match=r"V is in .*: give units = \{ V = \.\.\. \}"):
+    with pytest.raises(vr.FileError, match=r"V is in .*units = \{ V = 'UNIT' \}"):
         data(text, more=more)
     found = data(text, more=more + 'units = { V = "mm/s" }\n')
     if not heading.startswith("log"):
@@ -90,7 +90,7 @@ def test_words_say_what_a_column_is(here, headings, kind, name, value):
         ("t [s],omega [1/min]", "of turns or of radians"),
         ("t [s],Drehzahl [1/s]", "of turns or of radians"),
         ("t [s],rpm", "of turns or of radians"),
-        ("time [s],velocity [m/s],speed [km/h]", "both say V: name one"),
+        ("time [s],velocity [m/s],speed [km/h]", "may both be V: write one"),
         ("t [s],u [m/s]", r"no column V or omega or x, only 'u \[m/s\]': if one of these is V"),
     ],
 )

@@ -53,7 +53,7 @@ CASES = {
         "save its sheet as CSV",
         lambda text, *_: (rubbers.filled(RIGHT, {"sep": ";"}), {}),
     ),
-    "a gap": (RIGHT + "200;nan;2\n", "remove its row", without("200;nan")),
+    "a gap": (RIGHT + "200;nan;2\n", "remove the row", without("200;nan")),
     "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
     "words among the rows": (
         RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n",
@@ -94,24 +94,24 @@ CASES = {
     ),
     "a temperature without a unit": (
         "T;f [Hz];E' [MPa];E'' [MPa]\n<293*one; f; S/1e6; L/1e6>\n",
-        "give units=",
+        "units={'temperature'",
         give(units={"temperature": "K"}),
     ),
     "a unit that is not known": (
         "f [Schlag/min];E' [MPa];E'' [MPa]\n<60*f; S/1e6; L/1e6>\n",
-        "is not a unit of frequency: give units=",
+        "is not a unit of frequency: give the unit of its numbers, as units=",
         give(units={"frequency": "rpm"}),
     ),
     "a unit of another dimension, named": (
         "f [Hz];S1 [N/mm];S2 [N/mm]\n<f; S/1e6; L/1e6>\n",
-        "'N/mm' is not a unit of storage: give units=",
+        "'N/mm' is not a unit of storage: give the unit of its numbers, as units=",
         give(units={"storage": "MPa", "loss": "MPa"}),
         {"storage": "S1 [N/mm]", "loss": "S2 [N/mm]"},
     ),
     **{
         f"a factor, named: {factor}": (
             f"f [Hz];E' {factor};E'' {factor}\n<f; S/1e6; L/1e6>\n",
-            "is not a unit of storage: give units=",
+            "is not a unit of storage: give the unit of its numbers, as units=",
             give(units={"storage": "MPa", "loss": "MPa"}),
             {"storage": f"E' {factor}", "loss": f"E'' {factor}"},
         )
@@ -119,12 +119,12 @@ CASES = {
     },
     "a modulus without a unit": (
         "f [Hz];E' [MPa];E''\n<f; S/1e6; L/1e6>\n",
-        "give units={'loss'",
+        "units={'loss'",
         give(units={"loss": "MPa"}),
     ),
     "an angular frequency in Hz": (
         "Angular frequency [Hz];E' [MPa];E'' [MPa]\n<w; S/1e6; L/1e6>\n",
-        "or give units=",
+        "or give the unit of its numbers, as units=",
         give(units={"angular frequency": "rad/s"}),
     ),
     "frequencies that contradict, the second": (
@@ -140,7 +140,7 @@ CASES = {
     ),
     "a tan delta in per cent beside moduli": (
         "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 100*tan>\n",
-        "give units={'tan delta': UNIT}",
+        "units={'tan delta': '%'}",
         give(units={"tan delta": "%"}),
     ),
     "a tan delta that is wrong": (
@@ -156,12 +156,12 @@ CASES = {
     ),
     "logarithms": (
         "f,Storage,Loss\n<log(f); log(S); log(L)>\n",
-        "write log before their headings",
+        "write log before the heading of a logarithm",
         change("f,Storage,Loss", "log f (Hz),log Storage (Pa),log Loss (Pa)"),
     ),
     "four columns without headings": (
         "<n; f; S/1e6; L/1e6>\n",
-        "they are called 'column 0', 'column 1'",
+        "these are called 'column 0', 'column 1'",
         give(
             columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"},
             units=("Hz", "MPa"),
