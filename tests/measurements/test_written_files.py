@@ -9,7 +9,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
-from viscoroll.measurements.text_cells import readings
 
 f = rubbers.FREQUENCY
 w = rubbers.OMEGA
@@ -112,8 +111,3 @@ def test_any_file_is_read_right(tmp_path, text):
     assert close([*found], [w, S, L], tol.DMA_DIGITS)
     assert close(found.temperature, 23.5, tol.DMA_DIGITS)
     assert found.mode == "tension"
-
-
-@pytest.mark.parametrize("heading", ["log10(f/Hz)", "log10(f) [Hz]", "lg f (Hz)", "log10 f/Hz"])
-def test_the_unit_of_a_logarithm_has_no_blank(heading):
-    assert ("f", "Hz", 10.0) in [each[:3] for each in readings(heading)]
