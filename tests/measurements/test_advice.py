@@ -21,9 +21,9 @@ THOUSANDS = THOUSANDS.replace(";3617", ";3,617")
 RIGHT = "f [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n"
 
 
-def change(old, new, count=-1):
+def change(old, new):
     """The advice is to change the file: a function of its text."""
-    return lambda text, _, options: (text.replace(old, new, count), options)
+    return lambda text, _, options: (text.replace(old, new), options)
 
 
 def without(pattern):

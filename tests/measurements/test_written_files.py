@@ -35,8 +35,6 @@ PASCAL = {
     "dyn/cm²": 10.0,
     "bar": 1e-5,
 }
-RATIO = {"": 1.0, "-": 1.0, "1": 1.0, "%": 100.0}
-DEGREES = {"deg": 1.0, "°": 1.0, "rad": np.pi / 180.0}
 PLACES = [
     (f, HERTZ, "f;Frequency;Frequenz;freq.;Test frequency;Prüffrequenz"),
     (
@@ -57,11 +55,15 @@ LOSS = (
 )
 TAN = (
     L / S,
-    RATIO,
+    {"": 1.0, "-": 1.0, "1": 1.0, "%": 100.0},
     "tan delta;tan(δ);Loss factor;Verlustfaktor;Tan(delta);tan_delta;Damping",
 )
 WHOLE = np.hypot(S, L), PASCAL, "|E*|;E*;Complex modulus;Komplexer Modul"
-PHASE = np.degrees(np.arctan2(L, S)), DEGREES, "delta;Phase angle;Phasenwinkel;δ"
+PHASE = (
+    np.degrees(np.arctan2(L, S)),
+    {"deg": 1.0, "°": 1.0, "rad": np.pi / 180.0},
+    "delta;Phase angle;Phasenwinkel;δ",
+)
 CHOICES = [
     (STORAGE, LOSS),
     (STORAGE, TAN),
