@@ -37,17 +37,6 @@ SI_UNITS = {
     "force": "N m-1",
     "torque": "N m m-1",
 } | dict.fromkeys(("work_force", "slip_loss"), "J m-1")
-#: files of which others say no more by their numbers
-DIFFERENT = [
-    "a preset",
-    "compliances",
-    "rubber on rubber",
-    "own times",
-    "a driven roller",
-    "unsteady",
-]
-
-
 # --- what the inputs of a motion mean ---
 
 
@@ -104,23 +93,17 @@ def alone(run, values, i):
     return vr.roll(scene, *call, **options)
 
 
-def largest(values):
-    return np.abs(np.nan_to_num(values)).max()
-
-
 @pytest.mark.parametrize("text", FILES.values(), ids=FILES)
 def test_every_motion_is_that_of_a_call(text):
     run = run_of(text)
     values, motions = roll_block(run, 0)
     columns = columns_of(run, values, motions)
-    fields = ("onset_time", *run.settings.fields)
     for i in range(0, len(motions.V), 4):
         one = alone(run, values, i)
-        for name in fields:
+        for name in ("onset_time", *run.settings.fields):
             expected = getattr(one, name)
-            assert close(
-                columns[name][i], expected, tol.RUN_SI, scale=largest(expected), what=(name, i)
-            )
+            scale = np.abs(np.nan_to_num(expected)).max()
+            assert close(columns[name][i], expected, tol.RUN_SI, scale=scale, what=(name, i))
 
 
 @pytest.mark.parametrize("file", sorted(FILES.keys() - {"a temperature each"}))
@@ -136,7 +119,11 @@ def test_a_block_is_rolled_as_an_ensemble(file):
     assert ((np.asarray(mu) >= 0.05) & (np.asarray(mu) <= 0.6)).all()
 
 
-@pytest.mark.parametrize("file", DIFFERENT)
+@pytest.mark.parametrize(
+    "file",
+    # others say no more by their numbers
+    ["a preset", "compliances", "rubber on rubber", "own times", "a driven roller", "unsteady"],
+)
 def test_the_identity_is_of_every_number_but_n(file):
     """Of the file, whatever is told beside it; with blocks of one size a run is the same for any
     number of motions.
