@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from calls import TREAD, grid
 from ordinary_user import as_ordinary_user, let_in
 from processes import python
 from refusals import refused
@@ -162,9 +163,6 @@ def test_no_change_goes_unnoticed():
 
 # --- what is read is what was written ---
 
-RUBBER = vr.Material(
-    1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one'
-)
 #: format -> how a file of it is written, and read
 FORMATS = {
     "law": (
@@ -176,12 +174,10 @@ FORMATS = {
         lambda path: vr.load_law(path, 11.0),
     ),
     "grid": (
-        lambda path: vr.tables.save(
-            vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01]), path
-        ),
+        lambda path: vr.tables.save(grid(), path),
         vr.tables.load,
     ),
-    "material": (RUBBER.to_netcdf, vr.Material.from_netcdf),
+    "material": (TREAD.to_netcdf, vr.Material.from_netcdf),
 }
 
 
