@@ -20,16 +20,14 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
 )  # the paper's own scene is beyond the model
 
-HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
 PAGES = [
-    *HOME,
+    *(ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")),
     *(
         page
         for folder in ("docs", "data", "pipeline")
         for page in sorted((ROOT / folder).rglob("*.md"))
     ),
 ]
-FMUS = ROOT / "docs/loading/fmu_variables.md"
 
 
 @pytest.mark.filterwarnings("error")
@@ -53,7 +51,7 @@ def test_variables_of_fmus_are_listed(model):
         for v in MODELS[model].variables
     ]
     head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
-    assert head + "\n".join(rows) + "\n\n" in FMUS.read_text()
+    assert head + "\n".join(rows) + "\n\n" in (ROOT / "docs/loading/fmu_variables.md").read_text()
 
 
 @pytest.mark.parametrize("page", ["index", "validity"])
