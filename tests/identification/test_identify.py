@@ -237,7 +237,9 @@ def test_a_prediction_has_bands():
         [0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"}
     )
     band = fit.predict(vr.Resistance(speeds)).M
-    assert band.value.sel(speed="fast") == fit.cylinder.contact(1.0, delta=0.0, fields="M").M
+    assert float(band.value.sel(speed="fast")) == float(
+        fit.cylinder.contact(1.0, delta=0.0, fields="M").M
+    )
     t = np.linspace(0.0, 30.0, 7)
     by_slopes, drawn = (fit.predict(vr.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))
     exact = roller().roll(3.0, 30.0, t).V
