@@ -171,7 +171,6 @@ REFUSED = [
             "is incomplete: 'nu' is missing; write it again by Material.to_netcdf": lambda: (
                 of_material(SOFT_DATA.drop_vars("nu"))
             ),
-            "is incomplete: 'T_ref' is missing": lambda: of_material(SOFT_DATA.drop_vars("T_ref")),
             "given = 'both': must be relaxation or creep": lambda: of_material(
                 SOFT_DATA.assign_attrs(given="both")
             ),

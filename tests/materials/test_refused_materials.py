@@ -40,21 +40,9 @@ pytestmark = pytest.mark.usefixtures("here")
 
 
 @cache
-def fitted():
-    """A fit of E."""
-    return vr.identify(roller(), ranges("E"), resistance(), starts=1)
-
-
-@cache
 def wide():
     """A grid of several alphas."""
     return vr.tables.build(PAPER, [0.1, 2.0], delta=[0.0, 0.01], alpha=[1.0, 16.0])
-
-
-@cache
-def narrow():
-    """A law of some alphas."""
-    return vr.tables.law(alpha=(1, 2))
 
 
 DECADES = np.logspace(-1, 1, 11)
@@ -174,7 +162,11 @@ REFUSED = [
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
             "(39,) | (40,)": lambda: vr.Resistance(HUMP, HUMP[:-1], sigma=0.1),
-            "V0 of the record is not given": lambda: fitted().predict(vr.Coastdown(TIMES, TIMES)),
+            "V0 of the record is not given": (
+                lambda: vr.identify(roller(), ranges("E"), resistance(), starts=1).predict(
+                    vr.Coastdown(TIMES, TIMES)
+                )
+            ),
             "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
             "since it resists; reverse its sign": lambda: vr.Resistance(
                 HUMP, -resistance().M, sigma=0.01
@@ -183,7 +175,9 @@ REFUSED = [
                 netcdf(law_file()), 11.0
             ),
             "alpha = None: must be in [1, 2], the range of | given.nc (`viscoroll tables law "
-            "--alpha LOW:HIGH` writes another range)": lambda: vr.load_law(netcdf(narrow())),
+            "--alpha LOW:HIGH` writes another range)": lambda: vr.load_law(
+                netcdf(vr.tables.law(alpha=(1, 2)))
+            ),
             "alpha | must be": lambda: vr.load_law(netcdf(grid())),
             "alpha = nan: must be": lambda: vr.load_law(netcdf(grid()), alpha=nan),
             "alpha = 11.0: must be left out | has no axis alpha": lambda: vr.load_law(
@@ -364,6 +358,7 @@ REFUSED = [
     *each(
         partial(vr.fit_relaxation, STEP),
         {
+            "relaxation is not given: must be given beside t": {},
             "temperature | a single number": {
                 "relaxation": 1.0 + np.exp(-STEP),
                 "temperature": [20.0],
@@ -371,6 +366,10 @@ REFUSED = [
             "relaxation rises with time from 1.001 to 2: must be a relaxation modulus, which "
             "falls (a creep": 2.0 - np.exp(-STEP),
         },
+    ),
+    *each(
+        partial(vr.fit_relaxation, vr.RelaxationModulus(STEP, 1.0 / STEP, mode="shear")),
+        {"relaxation or mode is given: must be left out": [STEP, {"mode": "tension"}]},
     ),
     *each(
         vr.Bodies,
