@@ -77,7 +77,9 @@ BASE ?= HEAD
 same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 	$(RUN) -m pipeline.evidence.same --base $(BASE)
 
+# two processes of tests would compile the same kernels twice
 test: setup ## the test suite: what users meet
+	$(BIN)/viscoroll warmup
 	$(BIN)/pytest -n 2 --dist worksteal --ignore tests/evidence $(TEST)
 
 evidence: setup ## tests of what a release rests on: pipeline stages at small sizes, clusters, results that are kept

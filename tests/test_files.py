@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 from calls import TREAD, grid
 from ordinary_user import as_ordinary_user, let_in
-from processes import python
 from refusals import refused
 
 import viscoroll as vr
@@ -104,38 +103,6 @@ def test_what_is_read_only_is_not_replaced(write, shared, file, folder, words):
     path.chmod(0o666)
     shared.chmod(0o777)
     assert as_ordinary_user(lambda: write(path)) == ""
-
-
-FULL = """
-import resource, signal, sys
-from pathlib import Path
-sys.path.insert(0, sys.argv[1])
-import test_files
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-path = Path(sys.argv[2])
-for name, write in test_files.WRITERS.items():
-    write(path)
-    before = path.read_bytes()
-    for share in (0.0, 0.5, 0.99):
-        resource.setrlimit(resource.RLIMIT_FSIZE, (int(share * len(before)), resource.RLIM_INFINITY))
-        try:
-            write(path)
-        except test_files.vr.FileError as error:
-            print(error)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
-        assert path.read_bytes() == before
-        assert list(path.parent.iterdir()) == [path]
-"""  # noqa: E501
-
-
-def test_a_full_disk(tmp_path):
-    """In a process of its own, as HDF5 2.0 crashes one that meets a full disk: it must not meet
-    it.
-    """
-    path = tmp_path / "file"
-    done = python("-c", FULL, Path(__file__).parent, path)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == f"{path}: cannot be written (File too large)\n" * 9
 
 
 def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path):

@@ -43,3 +43,7 @@ def test_committed_sizes_are_those_of_production(file, section):
     assert all(
         part["sizes"] == full_sizes(section) for part in found.get("parts", {"": found}).values()
     )
+
+
+def test_blocks_show_the_measured_numbers():
+    made("evidence.document", "--check")

@@ -1,4 +1,6 @@
-"""Other processes and a host that flushes subnormals change no bit."""
+"""Other processes and a host that flushes subnormals change no bit; a system that is not POSIX; a
+full disk.
+"""
 
 import os
 import platform
@@ -11,7 +13,8 @@ import numpy as np
 import pytest
 import tolerances as tol
 from memory import forget
-from processes import printed
+from processes import printed, python
+from test_extras import RUN
 from test_invariance import assert_same, everything
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
@@ -115,3 +118,77 @@ def test_flushed_subnormals_change_nothing_else(elsewhere):
             )
             assert np.array_equal(found[normal], usual[normal]), (mode, name)
             assert np.array_equal(np.isnan(found), np.isnan(usual)), (mode, name)
+
+
+# --- systems that are not POSIX ---
+
+NOT_POSIX = """
+import importlib, os, pkgutil, sys
+import filelock, h5netcdf, h5py, matplotlib.pyplot, msgspec, numba, numpy, scipy.stats, tqdm, xarray, zarr
+for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "syslog"):
+    sys.modules[name] = None
+for name in set(dir(os)) & set(sys.argv[1].split()):
+    delattr(os, name)
+if hasattr(os, "process_cpu_count"):
+    os.process_cpu_count = os.cpu_count  # as Python 3.13 has it there
+import viscoroll
+for module in pkgutil.walk_packages(viscoroll.__path__, "viscoroll."):
+    if not module.name.endswith("__main__"):
+        importlib.import_module(module.name)
+from viscoroll.runs import estimate, export_netcdf, read_run, run_ensemble
+run = read_run("run.toml")
+run_ensemble(run, "store.zarr")
+export_netcdf("store.zarr", "store.nc")
+print(estimate(run).memory > 1e8)
+"""  # noqa: E501
+#: of os, on no Windows
+POSIX_ONLY = """
+O_CLOEXEC O_DIRECTORY O_NOFOLLOW chown fchmod fchown fork forkpty getegid geteuid getgid getgroups getpgid getpgrp
+getpriority getresgid getresuid getsid getuid killpg lchown lockf mkfifo mknod nice openpty pipe2 posix_fadvise
+posix_fallocate posix_spawn pread pwrite register_at_fork sched_getaffinity sched_setaffinity sendfile setgid setpgid
+setsid setuid statvfs sync sysconf uname wait wait3 wait4
+"""  # noqa: E501
+
+
+def test_every_module_loads_and_a_run_ends_without_posix(tmp_path):
+    (tmp_path / "run.toml").write_text(RUN)
+    command = [sys.executable, "-c", NOT_POSIX, POSIX_ONLY]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False
+    )
+    assert done.stdout == "True\n", done.stderr
+    assert (tmp_path / "store.nc").exists()
+
+
+# --- a full disk ---
+
+FULL = """
+import resource, signal, sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+import test_files
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+path = Path(sys.argv[2])
+for name, write in test_files.WRITERS.items():
+    write(path)
+    before = path.read_bytes()
+    for share in (0.0, 0.5, 0.99):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (int(share * len(before)), resource.RLIM_INFINITY))
+        try:
+            write(path)
+        except test_files.vr.FileError as error:
+            print(error)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        assert path.read_bytes() == before
+        assert list(path.parent.iterdir()) == [path]
+"""  # noqa: E501
+
+
+def test_a_full_disk(tmp_path):
+    """In a process of its own, as HDF5 2.0 crashes one that meets a full disk: it must not meet
+    it.
+    """
+    path = tmp_path / "file"
+    done = python("-c", FULL, Path(__file__).parents[1], path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"{path}: cannot be written (File too large)\n" * 9

@@ -1,6 +1,8 @@
 """Pages of the documentation that take long, and a command whose example does."""
 
+import re
 import shlex
+from pathlib import Path
 
 import pytest
 import tolerances as tol
@@ -9,7 +11,7 @@ from experiments import BRAKE, DRAG, TRUTH
 from pages import LONG, blocks, run_page
 from places import ROOT
 
-from viscoroll.cli import main
+from viscoroll import cli
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 
@@ -52,8 +54,37 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys, tmp_path):
 
 def test_example_of_a_coupled_grid_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main(["tables", "grid", "--help"]) == 0
+    assert cli.main(["tables", "grid", "--help"]) == 0
     _, *examples = capsys.readouterr().out.split("\n  viscoroll ")
     for example in examples:
-        assert main(shlex.split(example)) == 0
+        assert cli.main(shlex.split(example)) == 0
     assert (tmp_path / "rubber.nc").exists()
+
+
+def test_run_file_pages_can_be_followed(here, capsys):
+    """Every command and snippet in its order; the sample files are made as small as a test."""
+    for page in (ROOT / "docs/ensembles.md", ROOT / "docs/sensitivity.md"):
+        for language, code in re.findall(
+            r"^```(sh|python)\n(.*?)^```$", page.read_text(), re.S | re.M
+        ):
+            if language == "python":
+                exec(compile(code.replace("n=4096", "n=16"), page.name, "exec"), {})
+                continue
+            for line in code.splitlines():
+                command, *words = shlex.split(line, comments=True)
+                if words == ["samples"] and Path("samples").exists():  # which are smaller now
+                    continue
+                if command == "viscoroll" and "--cluster" not in words:
+                    assert cli.main(words + ["-n", "16"] * (words[0] == "sensitivity")) == 0, line
+                for file in Path("samples").iterdir() if words == ["samples"] else ():
+                    file.write_text(file.read_text().replace("n = 20_000", "n = 64"))
+    assert "mm" in capsys.readouterr().out
+    made = {path.name for path in here.iterdir()}
+    assert made == {
+        "samples",
+        "results.zarr",
+        "results.png",
+        "results.nc",
+        "sensitivity.png",
+        "sensitivity.nc",
+    }
