@@ -221,9 +221,9 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
         (
             'design = "latin"',
             "n = 1200",
-            "a Latin hypercube, whose strata depend on n: keep n = 350",
+            "a Latin hypercube, whose points depend on n: keep n = 350",
         ),
-        ('design = "sobol"', "n = 1200", "which is balanced only for a power of two: set n = 2048"),
+        ('design = "sobol"', "n = 1200", "which is even only for a power of two: set n = 2048"),
         ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
         ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
     ],

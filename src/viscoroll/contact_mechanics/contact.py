@@ -429,7 +429,7 @@ class Law:
         V, omega: finite, arrays of shape (), in the units of the roller.
         """
         refuse_overflow(self._kappa, V)
-        allowed = "smaller in magnitude: omega T_ref exceeds the largest double, 1.8e308"
+        allowed = "smaller in magnitude: omega T_ref exceeds the largest number, 1.8e308"
         raise ParameterError("omega", f"{float(omega):g}", allowed)
 
     @property

@@ -143,7 +143,7 @@ def start_of(path: str | PathLike[str]) -> Record:
     if start is None:
         raise FileError(
             path,
-            "is not a results store, or its start is damaged: repeat `viscoroll ensemble`",
+            "is not a results store, or a damaged one: repeat `viscoroll ensemble` with -o",
         )
     return start
 
@@ -234,7 +234,7 @@ class RunResults(Result):
         if not (self.path / MOTIONS).is_dir():
             raise FileError(
                 self.path,
-                'contains summaries but no motions: run it again with keep = "all" in [run]',
+                'contains summaries but no motions: repeat the run with keep = "all" in [run]',
             )
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
