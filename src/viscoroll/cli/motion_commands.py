@@ -406,7 +406,7 @@ def ensemble(arguments: Namespace) -> None:
 
 @command("verify", option("store", metavar="STORE.zarr", help="results of viscoroll ensemble"))
 def verify(arguments: Namespace) -> int:
-    """Check every file of a results store against its SHA-256.
+    """Check every file of a results store against its checksum (SHA-256).
 
     The exit code is 1 if a file differs or is missing.
 

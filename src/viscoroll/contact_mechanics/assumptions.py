@@ -389,7 +389,7 @@ def assess_coupling(long: float, instant: float, *, like: bool, solved: bool = F
         sentence += "states with traction are from a table of pressure and shear solved together"
         return Assumption(True, worst, sentence)
     sentence += (
-        f"up to {DUNDURS_LIMIT} in magnitude is allowed, as the pressure by shear is neglected"
+        f"up to {DUNDURS_LIMIT} in magnitude is allowed, as pressure caused by shear is neglected"
     )
     return Assumption(abs(worst) <= DUNDURS_LIMIT, worst, sentence)
 

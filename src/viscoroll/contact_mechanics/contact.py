@@ -304,7 +304,7 @@ class Law:
 
         _, scene, scale = resolve_model(roller, "law")
         refuse_arrays(
-            roller, scene, ("alpha", "kappa", "mu"), "one number: a law belongs to one scene"
+            roller, scene, ("alpha", "kappa", "mu"), "one number, as a law is of one roller"
         )
         table = scene.rolling_law
         assert table is not None

@@ -374,8 +374,8 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     )
     theta = half / cover.thinnest
     sentence = (
-        f"the thickness is {thickness:.3g} l0, and half the contact length is up to "
-        f"{largest(theta):.2g} times the thickness; up to "
+        f"the layer is {thickness:.3g} times as thick as the contact at rest is long; half the "
+        f"contact length is up to {largest(theta):.2g} times the thickness, up to "
         f"{np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is allowed, where the "
         "contact sticks in front and slips behind (beyond that, use method='coupled')"
     )

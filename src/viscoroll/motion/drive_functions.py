@@ -374,8 +374,8 @@ def refuse_rest(rest: Any, functions: DriveFunctions) -> None:
     if functions.acts_at_end:
         sentence = (
             f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
-            "the motion: leave rest out, or let the load end earlier (when a brake stops the "
-            "cylinder is in switches of a Motion)"
+            "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
+            "time at which a brake stops the cylinder)"
         )
         raise ParameterError("rest", rest, "None", sentence)
 

@@ -273,7 +273,9 @@ class Ensemble(RollResult):
                 )
                 text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
                 rows.append(SummaryRow(name, text, self._unit(name)))
-        rows.append(SummaryRow("partial slip", f"begins in {np.isfinite(self.onset_time).sum()}"))
+        rows.append(
+            SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()} motions")
+        )
         if self.flow.any():
             rows.append(
                 SummaryRow(

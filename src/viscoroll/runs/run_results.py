@@ -66,7 +66,7 @@ class Verdict:
         """
         if self.ok:
             blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
-            return f"complete: {blocks} and the summaries match their SHA-256"
+            return f"complete: {blocks} and the summaries match their checksums (SHA-256)"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
         lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"] * bool(
             self.missing
@@ -105,7 +105,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
     ... )
     >>> print(vr.runs.verify("results.zarr"))
-    complete: 1 block and the summaries match their SHA-256
+    complete: 1 block and the summaries match their checksums (SHA-256)
     """
     root = as_path(path)
     start = start_of(path)

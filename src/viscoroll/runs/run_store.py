@@ -550,7 +550,7 @@ def locked(root: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise FileError(root, "another process writes to it: wait until that has ended") from None
+        raise FileError(root, "another process writes here: wait until that process ends") from None
     except (OSError, NotImplementedError) as error:  # some network disks
         raise FileError(
             root,

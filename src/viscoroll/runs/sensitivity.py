@@ -155,7 +155,7 @@ def sobol_indices(
         raise ParameterError(
             "summaries",
             "; ".join(refused),
-            "quantities that each motion has and that differ: choose others, or a later t",
+            "quantities that every motion has and that vary: choose others, or a later t",
         )
     coordinates = {
         "t": ("t", run.t, column_attributes("t", run.si)),
