@@ -61,7 +61,7 @@ CONTACT = each(
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
         "delta and omega are both given: give one of the two": {"omega": 1.1},
         "V is a table: must be one column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
-        "the material (alpha) has shape | must be a single one": [
+        "the material (alpha) has shape | must be a single material": [
             {"roller": PAPER.replace(alpha=[2.0, 3.0]), "method": "coupled"},
             {"roller": MANY_SCENES, "method": "coupled"},
             {"roller": THREE, "method": "coupled"},
@@ -265,7 +265,7 @@ OTHERS = each(
         ],
         "progress = array([1, 2]) | must be": lambda: vr.runs.run_ensemble("", "", progress=ARRAY),
         "cluster = array([1, 2]) | must be": lambda: vr.runs.run_ensemble(
-            vr.runs.read_run(vr.datasets.path("run.toml")), "", cluster=ARRAY
+            vr.runs.read_run(vr.datasets.path("run.toml")), "s.zarr", cluster=ARRAY
         ),
         "name = array([1, 2]) | must be 'dma.csv', ": lambda: vr.datasets.path(ARRAY),
         "design 'sobol' = 21202: must be": lambda: points("sobol", 0, 9, 21_202, 0, 9, 0),

@@ -421,8 +421,8 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     most = largest(value)
     beyond = (
-        f" where the value of this line is at most 1; here it is {most:.2g}, both ends of the "
-        "contact slip, and the law does not hold: use method='coupled'"
+        f" where the value of this line is at most 1; here it is up to {most:.2g}, both ends slip, "
+        "and the law does not hold: use method='coupled'"
     )
     errors = (
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
