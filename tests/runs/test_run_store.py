@@ -163,7 +163,10 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
     (thesis / "chapter.tex").write_text("dear")
     for call, words in (
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
-        (partial(run_ensemble, run, thesis), "not a results store, as it contains chapter.tex"),
+        (
+            partial(run_ensemble, run, thesis),
+            "no results store, as it has chapter.tex: give another folder",
+        ),
         (partial(verify, thesis), "not a results store"),
     ):
         refused_file(call, words)

@@ -360,8 +360,7 @@ class Store:
         others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
         if others:
             raise FileError(
-                root,
-                f"is not a results store, as it contains {', '.join(others[:3])}: give another folder",
+                root, f"is no results store, as it has {', '.join(others[:3])}: give another folder"
             )
 
     def missing(self) -> Iterator[int]:
