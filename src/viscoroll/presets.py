@@ -96,9 +96,18 @@ PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 class SceneSection:
     """[scene]: the parameters of :class:`Scene`; with a preset all are optional.
 
-    prony : in place of alpha: moduli divided by the long-time modulus, and relaxation times.
-    creep : in place of alpha: compliances divided by the long-time compliance, retardation times,
-        and optionally alpha.
+    alpha : T_epsilon/T_sigma, retardation time divided by relaxation time, in [1, 1e12]; 1 is
+        elastic.  The unit of time is T_epsilon.
+    kappa : R/l0 = sqrt(E' R/(32 P)), radius divided by contact length at rest, > 0.  The theory of
+        half-spaces requires a kappa much larger than 1.
+    gamma : P T_ref^2/(m R), > 0; the larger gamma, the faster speeds change.  Motions need it;
+        contact, stress and steady rolling do not.
+    j : moment of inertia divided by m R^2, > 0; default: 1/2, that of a solid cylinder.
+    coupled : has no effect in a scene file, since a scene there has two bodies of one material.
+    prony : Prony series in place of alpha: moduli divided by the long-time modulus, and relaxation
+        times.
+    creep : creep series in place of alpha: compliances divided by the long-time compliance,
+        retardation times, and optionally alpha.
     """
 
     alpha: float | None = None
@@ -113,7 +122,23 @@ class SceneSection:
 
 @dataclass(kw_only=True)
 class CylinderSection:
-    """[cylinder]: the parameters of :class:`Cylinder` without its materials."""
+    """[cylinder]: the parameters of :class:`Cylinder` without its materials.
+
+    R : radius, m, > 0.
+    m : mass per metre of length, kg/m, > 0.
+    mu : coefficient of friction, > 0.
+    E : long-time Young's modulus of both bodies, Pa, > 0.  E, nu, T_epsilon and T_sigma take the
+        place of a section [material].
+    nu : Poisson's ratio of both bodies, in (-1, 0.5].
+    T_epsilon : retardation time of both bodies, s, at least T_sigma.
+    T_sigma : relaxation time of both bodies, s, > 0.
+    j : moment of inertia divided by m R^2, > 0; default: 1/2, that of a solid cylinder.
+    g : gravitational acceleration, m/s^2, > 0, for the weight; default: 9.81.
+    plane : "strain" for a long roller, "stress" for a thin disc, of which E' = pi E.
+    coupled : for a cover, and for half-spaces with Dundurs' constant above 0.05: true (default)
+        computes pressure and shear together, by a table that is made at first use; false takes the
+        fast law, in which the effect of the shear on the pressure is approximate.
+    """
 
     R: float
     m: float

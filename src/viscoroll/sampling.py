@@ -1,5 +1,6 @@
-"""Random inputs from scipy.stats distributions and a recorded seed: :func:`sample`, and blocks of
-points for runs.
+"""Random inputs from distributions of scipy.stats and a recorded seed, and points of runs.
+
+:func:`sample` draws inputs from distributions; :func:`points` draws blocks of points for runs.
 
 Each block of points is a function of (seed, block) alone.  Any process that draws a block, in any
 order, gets the same bits, and holds no other block in memory.

@@ -263,11 +263,11 @@ def identify(arguments: Namespace) -> None:
     """Identify friction, modulus, relaxation times and moduli, and bearing friction, from measurements.
 
     The command fits unknown parameters of a cylinder to measured rolling resistance, traction and motions, and states
-    which of them the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
-      [unknown]  NAME = [LOW, HIGH]: bounds; [cylinder] has the initial guess
-      [prior]    NAME = [VALUE, SD]
-      [[data]]   kind = resistance, traction or coastdown; file = a CSV whose columns are named as V, M, delta,
-                 Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m
+    which of the parameters the data do not determine.  The file has [cylinder], perhaps [material] and [base], and
+      [unknown]  NAME = [LOW, HIGH]: limits of an unknown; [cylinder] and [material] have the initial values
+      [prior]    optional, NAME = [VALUE, STANDARD DEVIATION]: what is known of an unknown beforehand
+      [[data]]   a test: kind = "resistance", "traction" or "coastdown"; file = a CSV with columns V, M, F, delta, Q, t,
+                 omega, x, or named by columns = { M = "HEADING" }; optional: sigma, load, temperature, name, V0, ...
 
     example:
       viscoroll samples
@@ -362,7 +362,7 @@ def law(arguments: Namespace) -> None:
 
     .nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
     or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
-    every alpha of a range.  Of a cover it is the fast law (coupled = false); viscoroll tables grid writes the coupled one.
+    every alpha of a range.  For a cover it is the fast law (coupled = false); `tables grid` writes the coupled solution.
 
     example:
       viscoroll samples
@@ -449,10 +449,10 @@ def build(arguments: Namespace) -> None:
     output(".nc", ".cdf", ".h"),
 )
 def grid(arguments: Namespace) -> None:
-    """Write the coupled solution of a roller over speed and creep as a law, for one mu and one thickness over l0.
+    """Write the coupled solution of a roller as a table over speed and creepage.
 
-    Pressure and shear are solved together.  The file is loaded by vr.load_law, as the material of the roller, and states
-    the largest errors beside its nodes.  Formats: .nc, .cdf (without HDF5) and .h (a header of C).
+    Pressure and shear are solved together.  The table holds for one mu and one thickness divided by l0, and states the
+    largest errors between its nodes.  vr.load_law reads it.  Formats: .nc, .cdf (without HDF5) and .h (a header of C).
 
     example:
       viscoroll samples
@@ -491,8 +491,8 @@ def info(arguments: Namespace) -> None:
 def validate(arguments: Namespace) -> int:
     """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
-    The exit code is 1 if an error is larger than twice the one that the file states, or than half of the largest value
-    of a field of a grid.
+    The exit code is 1 if an error is larger than twice the error that the file states.  For a grid it is also 1 if an
+    error is larger than half of the largest value of its quantity.
 
     example:
       viscoroll samples
@@ -562,7 +562,7 @@ def fmu(arguments: Namespace) -> None:
     """Build an FMU of a cylinder, for Modelica tools and others.
 
     The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
-    Of a cover it is the fast law, as with coupled = false.
+    For a cover it is the fast law, as with coupled = false.
     Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
     ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
     Both provide exact directional derivatives.

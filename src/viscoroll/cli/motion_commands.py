@@ -66,8 +66,8 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 def contact(arguments: Namespace) -> None:
     """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
 
-    The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT,
-    LOW:HIGH:COUNT:log, or several of these, separated by commas.
+    The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT (COUNT numbers
+    at equal distances), LOW:HIGH:COUNT:log (with equal ratios), or several of these, separated by commas.
 
     example:
       viscoroll contact paper-section-5 --V 0.5,1 --delta -0.04:0.04:5
@@ -154,7 +154,7 @@ def stress(arguments: Namespace) -> None:
 def roll(arguments: Namespace) -> None:
     """Integrate one free motion from given initial speeds.
 
-    The motion obeys Eq. (22), and may change between full slip and partial slip.
+    The motion obeys the equations of motion, Eq. (22) of the paper, and may change between full slip and partial slip.
     For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
 
     example:
@@ -220,7 +220,7 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
 def steady(arguments: Namespace) -> None:
     """Find the steady speeds under force, torque or slope.
 
-    Each equilibrium of each load is a row.  If a load has no equilibrium, the reason is printed.
+    Each row is a steady speed under one of the loads.  If a load has no steady speed, the reason is printed.
     Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
 
     example:
@@ -276,8 +276,8 @@ def steady(arguments: Namespace) -> None:
 def heat(arguments: Namespace) -> None:
     """Find the temperatures at which a cylinder runs.
 
-    Each equilibrium of loss and heat given off is a row; unstable ones lie between two stable ones.
-    The [material] needs wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
+    Each row is a temperature at which rolling loss and heat given off are equal; unstable ones lie between stable ones.
+    The [material] needs the key wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
 
     example:
       viscoroll samples

@@ -1,5 +1,6 @@
-"""Export of a cylinder and its law as a Functional Mock-up Unit (FMU) for Modelica tools, Simulink
-and others.
+"""Export of a cylinder and its law as an FMU, for Modelica tools, Simulink and others.
+
+An FMU (Functional Mock-up Unit) is a model for simulation programs.
 
     from viscoroll import fmu
     fmu.build(vr.presets.RUBBER_CYLINDER, "roller.fmu")  # or `viscoroll fmu`

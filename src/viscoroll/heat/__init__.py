@@ -1,3 +1,1 @@
-"""Heat of rolling: the temperatures at which a roller runs, its warming, and the limits that heat
-sets.
-"""
+"""Heat of rolling: temperatures of a roller, its warming, and the limits of load and speed."""

@@ -75,17 +75,34 @@ class MaterialSection(FileSection):
     """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`,
     and a temperature.
 
-    nu : Poisson's ratio; it may be left out of a rigid body (E = inf), on which it has no effect.
+    E : long-time Young's modulus, Pa, > 0; inf for a rigid body.
+    nu : Poisson's ratio, in (-1, 0.5].  A rigid body (E = inf) needs none.
     T_epsilon : retardation time of a standard linear solid, s, in place of a series.
     T_sigma : relaxation time of a standard linear solid, s, in place of a series.
-    creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
-    wlf, arrhenius : time-temperature shift.
-    vertical_shift : "entropic": moduli are multiplied by the absolute temperature over that of
-    ``reference``.
-    temperature : temperature of the material, degrees Celsius.
-    reference : temperature at which moduli and times are as given, degrees Celsius; default: where
-    the shift is 1.
-    nu_instant : Poisson's ratio at t = 0, where it differs from nu.
+    prony : Prony series: strengths divided by E, and relaxation times in units of T_ref; default:
+        elastic.
+    creep : creep series in place of ``prony``: strengths divided by the long-time compliance,
+        retardation times in units of T_ref, and optionally alpha.
+    T_ref : unit of the times of ``prony`` and ``creep``, s; default: 1.
+    thickness : thickness of a layer, m, that is bonded to a rigid core (covered roller) or to a
+        rigid bed (belt, lining); default: a half-space.  Both bodies may be layers.
+    density : density, kg/m^3, with which ``validity`` compares the speed with that of shear waves.
+    wlf : time-temperature shift log10 a_T = -C1 (T - T0)/(C2 + T - T0), with T0 in degrees Celsius;
+        C1 and C2 (in K) may be left out, they are then 17.44 and 51.6.
+    arrhenius : time-temperature shift ln a_T = energy/(8.314 J/(mol K)) (1/T - 1/T0), with absolute
+        temperatures in the formula; in the file T0 is in degrees Celsius, energy in J/mol.
+    vertical_shift : "entropic": the moduli are multiplied by the absolute temperature divided by
+        that of ``reference``.
+    temperature : temperature of the material, degrees Celsius; it needs ``wlf`` or ``arrhenius``.
+    reference : temperature at which moduli and times are as given, degrees Celsius; default: the
+        temperature at which the shift is 1.
+    nu_instant : Poisson's ratio at t = 0, if it differs from nu.
+    name : name in tables and figures.
+    measured : the DMA data to which the material was fitted, as ``viscoroll material fit`` writes
+        them: low and high, the first and last angular frequency, rad/s; misfit, the relative rms
+        error of the fit; source, a text; M_error, pairs of a transit frequency in 1/s and the
+        relative error of M there; strain, the strain amplitude.  Functions warn of speeds for which
+        these frequencies do not suffice.
     """
 
     file: None = None  # type: ignore[assignment]

@@ -1,5 +1,6 @@
-"""Ensembles from a run file: uncertain inputs, blocks of motions, and a results store that a
-repeated call completes.
+"""Ensembles from a run file: uncertain inputs, blocks of motions, and a results store.
+
+A repeated call completes the store.
 
 A TOML file enters :func:`read_run` (:mod:`.runfile`, :mod:`.uncertain_inputs`,
 :mod:`.run_rollers`).  :mod:`.run_engine` evaluates its blocks (:mod:`.run_store`) and writes them

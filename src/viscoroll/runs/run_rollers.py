@@ -32,8 +32,12 @@ Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
 
 
 class StartSection(msgspec.Struct):
-    """[start]: start speeds; one that [drive] prescribes is left out; an omega0 "rolling" is
-    replaced before.
+    """[start]: start speeds; an omega0 "rolling" is replaced before.
+
+    V0 : initial speed of the axis, of any sign, in m/s or divided by R/T_ref; left out if [drive]
+        has V.
+    omega0 : initial angular velocity, of any sign, in rad/s or divided by 1/T_ref, or "rolling" for
+        V0/R; left out if [drive] has omega.
     """
 
     V0: float | None = None
@@ -48,7 +52,21 @@ class ScheduleSection(msgspec.Struct):
 
 
 class DriveSection(msgspec.Struct):
-    """[drive]: loads, and prescribed speeds."""
+    """[drive]: loads, and prescribed speeds.
+
+    force : force on the axis in the direction of V, in N/m or divided by P.
+    torque : torque on the cylinder in the direction of omega, in N m/m or divided by P R.
+    brake : largest torque of a brake, >= 0, in N m/m or divided by P R.  It acts against omega, and
+        keeps omega = 0 while the torque that it must hold does not exceed it.
+    slope : angle of the slope, rad, > 0 if +V points downhill: P sin(slope) is added to ``force``.
+        The normal load is then P cos(slope), by which dimensionless forces and torques are divided.
+    drag : torque of the bearing against omega, divided by omega, >= 0, in N m s/m or divided by
+        P R T_ref.  It is part of ``torque`` of the result.
+    V : prescribed speed of the axis, in place of ``force``; it must not jump.  V0 of [start] is
+        then left out, or the value of V at t = 0.
+    omega : prescribed angular velocity, in place of ``torque``; it must not jump.  omega0 of
+        [start] is then left out, or the value of omega at t = 0.
+    """
 
     force: float | ScheduleSection | None = None
     torque: float | ScheduleSection | None = None
@@ -64,8 +82,8 @@ class HeatSection(msgspec.Struct):
     rolls at a speed.
 
     ambient : temperature of the surroundings, degrees Celsius.
-    conductance : heat given off per kelvin, W/(m K).
-    speed : m/s; default: V0 of the motion.
+    conductance : heat that a metre of the roller gives off for each kelvin above ambient, W/(m K).
+    speed : speed of the long rolling that warms the roller, m/s; default: V0 of the motion.
     """
 
     ambient: float

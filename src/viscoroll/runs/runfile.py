@@ -90,15 +90,17 @@ class RunSection(msgspec.Struct, frozen=True):
     seed : seed of all random inputs.
     design : "random" draws inputs independently, "latin" in a Latin hypercube, "sobol" from a Sobol
     sequence.
-    method : "flow" reads motions of one scene from a flow map, "integrate" integrates each, "auto"
-    chooses.
+    method : "flow" reads the motions from a flow map, for which start speeds alone may be
+    uncertain; "integrate" integrates each motion; "auto" chooses the faster of both.
     rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
     rest : speed below which a motion ends at rest, dimensionless; with [cylinder] in m/s.  Default:
     no such end.
-    unsteady : whether the added mass N of slow speed changes acts.
-    rested : whether the cylinder stood still for long before the start, or the time for which it
-    did.
-    block : number of motions in a block; by default as many as fit the memory.
+    unsteady : whether the moment contains N dV/dt, the effect of slow changes of the speed (N is
+    the added mass).
+    rested : whether the cylinder stood still for long before the start; a number is the time for
+    which it stood still, with [cylinder] in s.
+    block : number of motions that are computed together; default: 128 MiB of motions, at most 65536
+    (1048576 from a flow map).
     keep : "summaries" stores statistics alone, "all" also every motion with its inputs.
     fields : quantities of each motion that are stored with keep = "all".
     summaries : quantities whose statistics are stored.

@@ -1,5 +1,4 @@
-"""Tables of the contact law: exact files of one material or pair, and grids for look-up blocks of
-other programs.
+"""Tables of the contact law: files of one material or pair, and grids for other programs.
 
     import viscoroll as vr
     law = vr.tables.law(vr.presets.RUBBER_CYLINDER)
