@@ -420,7 +420,7 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
             data.misfit > MISFIT_LIMIT
         )
     if (known := error[np.isfinite(error)]).size:
-        sentence += f"; inside that band M is accurate to +-{100.0 * known.max():.2g} %"
+        sentence += f"; inside that band M is accurate to +-{100.0 * known.max():.3g} %"
     return Assumption(holds, frequency, sentence)
 
 
