@@ -200,8 +200,8 @@ def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool
     _warned_records.update(data)
     _warn(
         f"the rolling moment M is extrapolated: {share:.1%} of the motions start outside the "
-        "frequencies of the measurements of the material "
-        f"(for the medians of the inputs {'; '.join(map(str, data))})"
+        "frequencies at which the material was measured "
+        f"(at the medians of the inputs {'; '.join(map(str, data))})"
     )
     return True
 
