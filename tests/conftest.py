@@ -50,8 +50,9 @@ def nothing_said_yet(monkeypatch):
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """Files of a test are its own."""
+    """Files of a test are its own; their folder."""
     monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 """Arrays of materials, one for each state or motion; with modes that fall away, of two bodies."""
 
+from functools import partial
+
 import numpy as np
 
 import viscoroll as vr
@@ -53,36 +55,30 @@ def of_alphas():
 
 ONE = vr.Prony([2.0, 1.0], [1.0, 1e-2])
 ELASTIC = vr.Prony.elastic()
+_DRAW = np.random.default_rng(4)
+SHARE = _DRAW.uniform(0.0, 1.0, COUNT)
+FIRST = rubbers(_DRAW, 3)
 #: of one body for all, of rigid and elastic bodies, of like series with a share each
 PAIRS = {
-    "each": lambda draw, first, share: (first, rubbers(draw, 3), share),
-    "one base": lambda draw, first, share: (first, ONE, 0.6),
-    "a share each": lambda draw, first, share: (ONE, vr.Prony([0.5], [0.1]), share),
-    "elastic base": lambda draw, first, share: (first, ELASTIC, share),
-    "both elastic": lambda draw, first, share: (ELASTIC, ELASTIC, share),
-    "some rigid": lambda draw, first, share: (
-        first,
-        rubbers(draw, 2),
-        1.0 * (np.arange(COUNT) % 2),
-    ),
-    "rigid cylinder": lambda draw, first, share: (ELASTIC, first, 0.0),
-    "of one series": lambda draw, first, share: (first, first, share),
-    "of equal times": lambda draw, first, share: (
-        *(vr.Prony.creep(0.4 * draw.uniform(size=(COUNT, 2)), [1.0, fast]) for fast in (0.1, 1e-3)),
-        share,
+    "each": (FIRST, rubbers(_DRAW, 3), SHARE),
+    "one base": (FIRST, ONE, 0.6),
+    "a share each": (ONE, vr.Prony([0.5], [0.1]), SHARE),
+    "elastic base": (FIRST, ELASTIC, SHARE),
+    "both elastic": (ELASTIC, ELASTIC, SHARE),
+    "some rigid": (FIRST, rubbers(_DRAW, 2), 1.0 * (np.arange(COUNT) % 2)),
+    "rigid cylinder": (ELASTIC, FIRST, 0.0),
+    "of one series": (FIRST, FIRST, SHARE),
+    "of equal times": (
+        *(
+            vr.Prony.creep(0.4 * _DRAW.uniform(size=(COUNT, 2)), [1.0, fast])
+            for fast in (0.1, 1e-3)
+        ),
+        SHARE,
     ),
 }
-
-
-def pairs(kind):
-    draw = np.random.default_rng(len(kind))
-    share = draw.uniform(0.0, 1.0, COUNT)
-    return vr.Bodies(*PAIRS[kind](draw, rubbers(draw, 3), share))
-
-
 MATERIALS = {
     "one mode": of_alphas,
-    "3 modes": lambda: rubbers(np.random.default_rng(3), 3),
+    "3 modes": lambda: FIRST,
     "6 modes over 14 decades": lambda: series(2, 6, 14.0, 6),
     "16 modes": lambda: series(3, 16, 10.0, 4),
-} | {kind: lambda kind=kind: pairs(kind) for kind in PAIRS}
+} | {kind: partial(vr.Bodies, *bodies) for kind, bodies in PAIRS.items()}

@@ -21,3 +21,12 @@ def full_sizes(section):
     found = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text())[section]
     del found["quick"]
     return found
+
+
+def content(folder):
+    """Every file under a folder: its path there, and its bytes."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }

@@ -13,10 +13,10 @@ FREQUENCY = np.geomspace(0.05, 150.0, 12)
 OMEGA = 2.0 * np.pi * FREQUENCY
 
 
-def moduli(omega):
-    """Storage and loss modulus, Pa, at angular frequencies, rad/s."""
-    z = np.multiply.outer(np.asarray(omega, float), TAU)
-    return LONG + (z**2 / (1.0 + z**2)) @ STRENGTH, (z / (1.0 + z**2)) @ STRENGTH
+def moduli(omega, strengths=STRENGTH, tau=TAU, E=LONG):
+    """Storage and loss modulus, Pa, at angular frequencies, rad/s; by default of this rubber."""
+    z = np.multiply.outer(np.asarray(omega, float), tau)
+    return E + (z**2 / (1.0 + z**2)) @ strengths, (z / (1.0 + z**2)) @ strengths
 
 
 STORAGE, LOSS = moduli(OMEGA)
@@ -43,8 +43,8 @@ NAMES = {
 def filled(text, case):
     """A text with each ``<a; b; c>`` on its line replaced by rows of these columns.
 
-    ``case`` : may have "format" (of a number, %.7g; with a D at its end exponents have it), "sep"
-    (between cells), "decimal", "begin" and "end" (of a row).
+    ``case`` : may have "format" (of a number, %.7g), "sep" (between cells), "decimal", "begin" and
+    "end" (of a row).
     """
 
     def rows(found):
@@ -59,12 +59,7 @@ def filled(text, case):
         if part.startswith("'"):
             return [part.strip("'")] * FREQUENCY.size
         values = np.broadcast_to(eval(part, NAMES), FREQUENCY.size)
-        return [number(value) for value in values]
-
-    def number(value):
-        written = case.get("format", "%.7g") % value
-        if written.endswith("D"):  # as Fortran writes exponents
-            written = written[:-1].replace("e", "D")
-        return written.replace(".", case.get("decimal", "."))
+        written = (case.get("format", "%.7g") % value for value in values)
+        return [number.replace(".", case.get("decimal", ".")) for number in written]
 
     return re.sub(r"<([^<>\n]*)>", rows, text).replace("\n", case.get("newline", "\n"))

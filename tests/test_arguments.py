@@ -42,9 +42,10 @@ RANGE_OF = {name: symbol.range for name, symbol in SYMBOLS.items()} | {
 KINDS = {
     "bool": ("no", math.nan, [True], np.array([True])),
     "int": (-5, 1.5, "2", True, np.timedelta64(5)),
-    "Literal": ("magic", 3, ["table"], np.array([1.0, 2.0])),
-    "Mode": ("magic", 3, ["shear"], np.array([1.0, 2.0])),
-    "Plane": ("magic", 3, ["strain"], np.array([1.0, 2.0])),
+    **{
+        kind: ("magic", 3, [good], np.array([1.0, 2.0]))
+        for kind, good in {"Literal": "table", "Mode": "shear", "Plane": "strain"}.items()
+    },
 }
 
 

@@ -42,41 +42,37 @@ pytestmark = [
 
 def test_scenes_and_cylinders_of_files():
     """What files hold: scenes, cylinders."""
-    assert of_roller(SCENE_FILE).scene() == vr.Scene(11.0, 2.91, 0.2)
-    assert (
-        of_roller(SCENE_FILE + "gamma = 1.1e4\nj = 0.5").scene()
-        == vr.presets.PAPER_SECTION_5_ROUNDED
-    )
-    assert (
-        of_roller(CYLINDER_FILE + 'plane = "stress"\nj = 1').scene()
-        == replace(PAPER_CYLINDER, plane="stress", j=1.0).scene()
-    )
-    assert of_roller(
-        'preset = "paper-figures-2-3"\n[scene]\nmu = 0.3'
-    ).scene() == vr.presets.PAPER_FIGURES_2_3.replace(mu=0.3)
-    assert of_roller(
-        SCENE_FILE.replace("alpha = 11", "prony = { E = [2.0, 6.0], tau = [1.0, 1e-4] }")
-    ) == vr.Scene(kappa=2.91, mu=0.2, material=SERIES)
-    assert of_roller(
-        SCENE_FILE.replace("alpha = 11", "creep = { J = [0.5], T = [1.0], alpha = 2.0 }")
-    ) == vr.Scene(kappa=2.91, mu=0.2, material=vr.Prony.creep([0.5], [1.0]))
-    assert of_roller(ROLLER_FILE + "load = 500\n" + RUBBER_FILE) == pair(RUBBER, None, load=500.0)
+    for text, exact in {
+        SCENE_FILE: vr.Scene(11.0, 2.91, 0.2),
+        SCENE_FILE + "gamma = 1.1e4\nj = 0.5": vr.presets.PAPER_SECTION_5_ROUNDED,
+        CYLINDER_FILE + 'plane = "stress"\nj = 1': replace(PAPER_CYLINDER, plane="stress", j=1.0),
+        'preset = "paper-figures-2-3"\n[scene]\nmu = 0.3': (
+            vr.presets.PAPER_FIGURES_2_3.replace(mu=0.3)
+        ),
+        SCENE_FILE.replace("alpha = 11", "prony = { E = [2.0, 6.0], tau = [1.0, 1e-4] }"): (
+            vr.Scene(kappa=2.91, mu=0.2, material=SERIES)
+        ),
+        SCENE_FILE.replace("alpha = 11", "creep = { J = [0.5], T = [1.0], alpha = 2.0 }"): (
+            vr.Scene(kappa=2.91, mu=0.2, material=vr.Prony.creep([0.5], [1.0]))
+        ),
+        ROLLER_FILE + "load = 500\n" + RUBBER_FILE: pair(RUBBER, None, load=500.0),
+    }.items():
+        assert of_roller(text) == exact, text
 
 
 def test_materials_of_files():
     """What files hold: materials."""
-    assert of_materials(RUBBER_FILE + 'name = "tread"\ndensity = 1100\n') == {
-        "material": replace(RUBBER, name="tread", density=1100.0)
-    }
-    assert of_materials(RUBBER_FILE + "wlf = { T0 = 20.0 }\ntemperature = 30.0\n") == {
-        "material": RUBBER.at(30.0, vr.WLF(T0=20.0))
-    }
-    assert of_materials(
-        RUBBER_FILE + "reference = 20.0\nwlf = { T0 = -10.0 }\ntemperature = 30.0\n"
-    ) == {"material": replace(RUBBER, temperature=20.0).at(30.0, vr.WLF(T0=-10.0))}
-    assert of_materials(
-        RUBBER_FILE + "arrhenius = { energy = 8e4, T0 = 20.0 }\ntemperature = 30.0\n"
-    ) == {"material": RUBBER.at(30.0, vr.Arrhenius(energy=80000.0, T0=20.0))}
+    for text, exact in {
+        'name = "tread"\ndensity = 1100\n': replace(RUBBER, name="tread", density=1100.0),
+        "wlf = { T0 = 20.0 }\ntemperature = 30.0\n": RUBBER.at(30.0, vr.WLF(T0=20.0)),
+        "reference = 20.0\nwlf = { T0 = -10.0 }\ntemperature = 30.0\n": (
+            replace(RUBBER, temperature=20.0).at(30.0, vr.WLF(T0=-10.0))
+        ),
+        "arrhenius = { energy = 8e4, T0 = 20.0 }\ntemperature = 30.0\n": (
+            RUBBER.at(30.0, vr.Arrhenius(energy=80000.0, T0=20.0))
+        ),
+    }.items():
+        assert of_materials(RUBBER_FILE + text) == {"material": exact}, text
     assert of_materials("[material]\nE = 1e5\nnu = 0.4\ncreep = { J = [0.5], T = [1.0] }") == {
         "material": vr.Material(100000.0, 0.4, vr.Prony.creep([0.5], [1.0]))
     }
@@ -98,28 +94,14 @@ def test_materials_of_files():
     assert read_law_source("rubber-roller") == vr.presets.RUBBER_ROLLER.material
 
 
-def test_tables_and_DMA_files_of_other_programs():
-    """Tables and DMA files of other programs."""
-    # rows of 2-D arrays are curves
+def test_rows_of_labelled_arrays_are_curves():
     shifted = OMEGA * np.array([[10.0], [1.0]])
-    for kind in (np.array, xr.DataArray):
-        columns = [OMEGA] * 2, TREAD.storage(shifted), TREAD.loss(shifted)
-        fit = vr.fit_prony(*map(kind, columns), temperature=[0.0, 20.0])
-        assert close(fit.shifts.a_T[0], 10.0, tol.DMA_SHIFT)
-    # units that are equal, and those that the user gives; a symbol is no unit
-    for row, units, found in (
-        ("Hz,N/mm²,MPa", None, ["Hz", "MPa", "MPa"]),
-        (
-            "rad/s,kPa,kPa",
-            {"frequency": "Hz", "storage": "kPa", "loss": "MPa"},
-            ["Hz", "kPa", "MPa"],
-        ),
-    ):
-        path = file(f"f [Hz],E' [MPa],E'' [MPa]\n{row}\n1,2,1\n2,2,1\n")
-        assert [*vr.read_dma(path, units=units).units.values()] == found
-    assert vr.read_dma(
-        file("f,E',E'',Temperature (T)\nrad/s,kPa,kPa,°C\n1,1,1,20\n2,1,1,20\n")
-    ).temperature.tolist() == [20.0, 20.0]
+    columns = [OMEGA] * 2, TREAD.storage(shifted), TREAD.loss(shifted)
+    fit = vr.fit_prony(*map(xr.DataArray, columns), temperature=[0.0, 20.0])
+    assert close(fit.shifts.a_T[0], 10.0, tol.DMA_SHIFT)
+
+
+def test_grids_of_other_programs():
     # without a mu Q has no bound, and the load is not needed
     assert not vr.load_law(
         netcdf(

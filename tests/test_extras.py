@@ -1,19 +1,15 @@
-"""What is not there everywhere: packages of an extra, what only POSIX has, a newer Python, the name
-of the version.
-"""
+"""What is not there everywhere: packages of an extra, what only POSIX has, a newer Python."""
 
-import importlib.metadata
-import os
 import subprocess
 import sys
 from functools import partial
-from pathlib import Path
 
 import pytest
-from places import ROOT
+from processes import python
+from run_files import run_of
 
 import viscoroll as vr
-from viscoroll.runs import export_netcdf, open_run, read_run, run_ensemble
+from viscoroll.runs import export_netcdf, open_run, run_ensemble
 
 RUN = """
 preset = "paper-section-5"
@@ -26,12 +22,6 @@ t = [1e-4]
 rtol = 1e-6
 """
 MISSING = "zarr", "distributed", "pyarrow"
-
-
-@pytest.fixture
-def run_file(tmp_path):
-    (tmp_path / "run.toml").write_text(RUN)
-    return tmp_path / "run.toml"
 
 
 @pytest.fixture
@@ -53,9 +43,9 @@ def bare(monkeypatch):
 # --- extras ---
 
 
-def test_a_missing_extra_is_named(bare, run_file, tmp_path):
-    run = read_run(run_file)
-    store = tmp_path / "store.zarr"
+def test_a_missing_extra_is_named(bare, here):
+    run = run_of(RUN)
+    store = here / "store.zarr"
     for call in (
         partial(run_ensemble, run, store),
         partial(open_run, store),
@@ -68,16 +58,14 @@ def test_a_missing_extra_is_named(bare, run_file, tmp_path):
     assert not store.exists()
 
 
-def test_cluster_and_parquet_are_extras_too(bare, run_file, tmp_path, monkeypatch):
+def test_cluster_and_parquet_are_extras_too(bare, here, monkeypatch):
     monkeypatch.delitem(sys.modules, "zarr")
     with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[cluster\]"):
-        run_ensemble(read_run(run_file), tmp_path / "store.zarr", cluster="local")
-    (tmp_path / "a.parquet").touch()
-    run_file.write_text(
-        RUN.replace("omega0 = 0.5", 'omega0 = { file = "a.parquet", column = "a" }')
-    )
+        run_ensemble(run_of(RUN), "store.zarr", cluster="local")
+    (here / "a.parquet").touch()
+    text = RUN.replace("omega0 = 0.5", 'omega0 = { file = "a.parquet", column = "a" }')
     with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[parquet\]"):
-        read_run(run_file)
+        run_of(text)
 
 
 # --- systems that are not POSIX ---
@@ -110,8 +98,9 @@ setsid setuid statvfs sync sysconf uname wait wait3 wait4
 """  # noqa: E501
 
 
-def test_every_module_loads_and_a_run_ends_without_posix(run_file, tmp_path):
-    command = [sys.executable, "-c", NOT_POSIX, " ".join(POSIX_ONLY.split())]
+def test_every_module_loads_and_a_run_ends_without_posix(tmp_path):
+    (tmp_path / "run.toml").write_text(RUN)
+    command = [sys.executable, "-c", NOT_POSIX, POSIX_ONLY]
     done = subprocess.run(
         command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False
     )
@@ -119,23 +108,13 @@ def test_every_module_loads_and_a_run_ends_without_posix(run_file, tmp_path):
     assert (tmp_path / "store.nc").exists()
 
 
-# --- Pythons and versions ---
+# --- Pythons ---
 
 
 def test_an_older_python_is_told_in_one_line():
     code = "import sys; sys.version_info = (3, 10, 13); import viscoroll"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stderr.splitlines()[-1].startswith(
-        "ImportError: viscoroll needs Python 3.11 or newer, this is 3."
+    assert (
+        python("-c", code)
+        .stderr.splitlines()[-1]
+        .startswith("ImportError: viscoroll needs Python 3.11 or newer, this is 3.")
     )
-
-
-def test_one_version():
-    """The metadata are made from it; the citation says the same."""
-    citation = (ROOT / "CITATION.cff").read_text()
-    assert f"\nversion: {vr.__version__}\n" in citation
-    assert "doi: 10.1007/s00707-020-02643-5" in citation
-    if Path(vr.__file__).is_relative_to(
-        Path(os.__file__).parent
-    ):  # installed, not a tree on PYTHONPATH
-        assert importlib.metadata.version("viscoroll") == vr.__version__

@@ -2,14 +2,14 @@
 
 import os
 import stat
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from calls import TREAD, grid
 from ordinary_user import as_ordinary_user, let_in
+from processes import python
 from refusals import refused
 
 import viscoroll as vr
@@ -50,10 +50,14 @@ def test_an_obstacle_is_told_and_stays(write, tmp_path, obstacle):
     path = tmp_path / "folder" / "file"
     path.parent.mkdir()
     make(path)
-    before = [(each.name, each.lstat().st_mode) for each in tmp_path.rglob("*")]
+
+    def there():
+        return [(each.name, each.lstat().st_mode) for each in tmp_path.rglob("*")]
+
+    before = there()
     with pytest.raises(vr.FileError, match=words):
         write(path)
-    assert [(each.name, each.lstat().st_mode) for each in tmp_path.rglob("*")] == before
+    assert there() == before
     assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
 
 
@@ -129,8 +133,7 @@ def test_a_full_disk(tmp_path):
     it.
     """
     path = tmp_path / "file"
-    command = [sys.executable, "-c", FULL, str(Path(__file__).parent), str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = python("-c", FULL, Path(__file__).parent, path)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == f"{path}: cannot be written (File too large)\n" * 9
 
@@ -160,9 +163,6 @@ def test_no_change_goes_unnoticed():
 
 # --- what is read is what was written ---
 
-RUBBER = vr.Material(
-    1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one'
-)
 #: format -> how a file of it is written, and read
 FORMATS = {
     "law": (
@@ -174,12 +174,10 @@ FORMATS = {
         lambda path: vr.load_law(path, 11.0),
     ),
     "grid": (
-        lambda path: vr.tables.save(
-            vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01]), path
-        ),
+        lambda path: vr.tables.save(grid(), path),
         vr.tables.load,
     ),
-    "material": (RUBBER.to_netcdf, vr.Material.from_netcdf),
+    "material": (TREAD.to_netcdf, vr.Material.from_netcdf),
 }
 
 
@@ -189,27 +187,30 @@ def test_damage_is_told(form, tmp_path):
     that names it.
     """
     path = tmp_path / "file.nc"
-    (write, read) = FORMATS[form]
+    write, read = FORMATS[form]
 
-    def told(content, *words):
-        path.write_bytes(content)
+    def told(path, *words):
         refused(lambda: read(path), str(path), *words, error=vr.FileError)
 
-    refused(lambda: read(path), str(path), "cannot be read", error=vr.FileError)
-    refused(lambda: read(tmp_path), str(tmp_path), "cannot be read", error=vr.FileError)
+    def told_of(content):
+        path.write_bytes(content)
+        told(path)
+
+    told(path, "cannot be read")
+    told(tmp_path, "cannot be read")
     write(path)
     assert [each.name for each in tmp_path.iterdir()] == ["file.nc"]
     whole = path.read_bytes()
     for position in np.random.default_rng(3).integers(0, 8 * (len(whole) - 200), 20):
         damaged = bytearray(whole)
         damaged[position // 8] ^= 1 << position % 8
-        told(bytes(damaged))
+        told_of(bytes(damaged))
     for share in (0.001, 0.5, 0.99):
-        told(whole[: int(share * len(whole))])
+        told_of(whole[: int(share * len(whole))])
     for other in (b"", b"V,delta\n1,2\n", files.seal(b"[material]")):
-        told(other)
+        told_of(other)
     for another, (write_it, _) in FORMATS.items():
         # a table that is loaded may be a law, and load_law reads grids too
         if another == "material" != form or (another == "grid" and form == "material"):
             write_it(path)
-            refused(lambda: read(path), str(path), error=vr.FileError)
+            told(path)

@@ -24,13 +24,10 @@ def public_calls():
 
 
 def parameters(call):
-    if not (
-        inspect.isfunction(call)
-        or inspect.ismethod(call)
-        or inspect.isfunction(getattr(call, "__init__", None))
-    ):
+    try:
+        found = inspect.signature(call).parameters.values()
+    except (TypeError, ValueError):  # not callable, or of C
         return []
-    found = inspect.signature(call).parameters.values()
     if any(each.kind is each.VAR_KEYWORD for each in found):
         return []
     return [

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from calls import pair
 from run_files import run_of
 
 import viscoroll as vr
@@ -15,7 +16,8 @@ pytestmark = pytest.mark.filterwarnings(
 )  # the paper's own scene is beyond the model
 
 
-def test_a_run_without_values(tmp_path):
+@pytest.mark.usefixtures("here")
+def test_a_run_without_values():
     """A panel without values says so; all values at one point are one bar."""
     for n, (start, wanted, empty) in enumerate(
         (
@@ -31,16 +33,16 @@ def test_a_run_without_values(tmp_path):
             f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 5\nt = '
             f"[0.0]\nsummaries = {wanted}\n"
         )
-        run_ensemble(run_of(text, tmp_path), tmp_path / f"{n}.zarr", threads=1)
-        figure = draw(open_run(tmp_path / f"{n}.zarr").summaries)
+        run_ensemble(run_of(text), f"{n}.zarr", threads=1)
+        figure = draw(open_run(f"{n}.zarr").summaries)
         assert [axes.get_title() for axes in figure.axes].count("no values") == empty
-        save(figure, tmp_path / "run.png")
+        save(figure, "run.png")
 
 
 def test_the_pressure_on_a_cover():
     """Without the shear stress, which is not known there."""
     rubber = replace(vr.Material.elastic(2e6, 0.5), thickness=0.012)
-    belt = vr.Cylinder(R=0.1, m=40.0, material=vr.Material.rigid(), base=rubber, mu=0.5, load=2e3)
+    belt = pair(vr.Material.rigid(), rubber, load=2e3)
     found = belt.stress(np.linspace(-0.02, 0.02, 21), 1.0, delta=0.0)
     (axes,) = found.plot().axes
     assert np.array_equal(axes.lines[0].get_ydata(), found.p)

@@ -45,20 +45,20 @@ def test_what_others_may_have_written_is_not_read(folder):
     assert kept(2.0)
 
 
-DAMAGE = {
-    "bit": lambda content, _: content[:200] + bytes([content[200] ^ 4]) + content[201:],
-    "truncated": lambda content, _: content[: len(content) // 2],
-    "empty": lambda content, _: b"",
-    "other": lambda _, other: other,
-}
-
-
-@pytest.mark.parametrize("damage", DAMAGE)
-def test_a_damaged_map_is_built_again(folder, damage):
+def test_a_damaged_map_is_built_again(folder):
     for number in (2.0, 3.0):
         kept(number)
     path, other = (place(number)[1] for number in (2.0, 3.0))
-    path.write_bytes(DAMAGE[damage](path.read_bytes(), other.read_bytes()))
-    with pytest.warns(RuntimeWarning, match=r"flow map cannot be used \(.+\) and is built again"):
-        assert not kept(2.0)
-    assert kept(2.0)
+    whole = path.read_bytes()
+    for damaged in (
+        whole[:200] + bytes([whole[200] ^ 4]) + whole[201:],
+        whole[: len(whole) // 2],
+        b"",
+        other.read_bytes(),
+    ):
+        path.write_bytes(damaged)
+        with pytest.warns(
+            RuntimeWarning, match=r"flow map cannot be used \(.+\) and is built again"
+        ):
+            assert not kept(2.0)
+        assert kept(2.0)

@@ -13,12 +13,7 @@ from places import ROOT
 
 import viscoroll as vr
 
-SOURCE = ROOT / "src"
-MODULES = [
-    ".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__")
-    for path in sorted(SOURCE.rglob("*.py"))
-    if ">>> " in path.read_text(encoding="utf-8")
-]
+MODULES = [each.name for each in pkgutil.walk_packages(vr.__path__, "viscoroll.")]
 
 
 def callables(name, thing):
@@ -33,7 +28,7 @@ def callables(name, thing):
             thing, lambda each: inspect.isfunction(each) or inspect.ismethod(each)
         ):
             if not part.startswith("_") and method.__module__.startswith("viscoroll"):
-                yield f"{name}.{part}", inspect.unwrap(getattr(method, "__func__", method))
+                yield f"{name}.{part}", inspect.unwrap(method)
     elif inspect.isfunction(thing):
         yield name, inspect.unwrap(thing)
 
@@ -50,10 +45,8 @@ def shown_on_the_site():
         elif re.fullmatch(r"   [\w.]+", line):
             owner, _, name = f"{module}.{line.strip()}".rpartition(".")
             found += callables(name, getattr(pkgutil.resolve_name(owner), name))
-    names = {}
-    for name, function in found:
-        names.setdefault(function, name)
-    return names
+    # the first of several names
+    return {function: name for name, function in reversed(found)}
 
 
 SHOWN = shown_on_the_site()
@@ -68,7 +61,6 @@ def test_examples_of_docstrings(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
     tried = doctest.testmod(import_module(name), extraglobs={"vr": vr}, optionflags=options)
-    assert tried.attempted
     assert not tried.failed
 
 

@@ -13,13 +13,12 @@ def example(name):
     return runpy.run_path(str(ROOT / f"docs/examples/{name}.py"))
 
 
-def test_solve_ivp_is_roll(capsys):
+def test_solve_ivp_is_roll():
     found = example("law_solve_ivp")
     m = vr.roll(vr.presets.RUBBER_ROLLER, 0.5, 0.0, found["t"], rtol=1e-11)
     assert found["found"].success
     assert close(found["V"], m.V, tol.EXAMPLE_RADAU, scale=1.0)
     assert close(found["omega"], m.omega, tol.EXAMPLE_RADAU, scale=1.0)
-    assert "V = 0.044252, omega = 0.044252" in capsys.readouterr().out
 
 
 def test_every_rope_carries_the_resistance_behind_it():

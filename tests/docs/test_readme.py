@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 import tolerances as tol
+from calls import of_roller
 from pages import HOWTO, LONG, blocks, run_page
 from places import ROOT
 from processes import made
@@ -19,25 +20,20 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
 )  # the paper's own scene is beyond the model
 
-HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
 PAGES = [
-    *HOME,
+    *(ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")),
     *(
         page
         for folder in ("docs", "data", "pipeline")
         for page in sorted((ROOT / folder).rglob("*.md"))
     ),
 ]
-FMUS = ROOT / "docs/loading/fmu_variables.md"
 
 
 @pytest.mark.filterwarnings("error")
 def test_readme_block_runs(capsys):
-    """Without a warning; the page has one screen of text for each thing that it says."""
-    assert len((ROOT / "README.md").read_text().splitlines()) <= 120
+    """Without a warning."""
     (code,) = blocks(ROOT / "README.md", "python")
-    lines = [line for line in code.splitlines() if line.strip() and not line.startswith("#")]
-    assert len(lines) <= 13
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
     assert "slides for 0.04 s, then rolls to 2.8 m" in printed
@@ -55,7 +51,7 @@ def test_variables_of_fmus_are_listed(model):
         for v in MODELS[model].variables
     ]
     head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
-    assert head + "\n".join(rows) + "\n\n" in FMUS.read_text()
+    assert head + "\n".join(rows) + "\n\n" in (ROOT / "docs/loading/fmu_variables.md").read_text()
 
 
 @pytest.mark.parametrize("page", ["index", "validity"])
@@ -64,8 +60,8 @@ def test_first_pages_run(page, capsys):
     assert "small_contact  yes " in capsys.readouterr().out
 
 
-def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.usefixtures("here")
+def test_offline_and_runtime(capsys):
     run_page("offline_runtime")
     worst, way = map(float, capsys.readouterr().out.split())
     assert worst < tol.LAW_STATED
@@ -74,15 +70,13 @@ def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.usefixtures("two_speeds")
 @pytest.mark.parametrize("page", sorted(HOWTO - LONG))
-def test_howto_runs(page, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_howto_runs(page, here):
     run_page(f"howto/{page}")
-    assert page != "files" or (tmp_path / "motion.nc").exists()
+    assert page != "files" or (here / "motion.nc").exists()
 
 
-def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):
+def test_run_file_pages_can_be_followed(here, capsys):
     """Every command and snippet in its order; the sample files are made as small as a test."""
-    monkeypatch.chdir(tmp_path)
     for page in (ROOT / "docs/ensembles.md", ROOT / "docs/sensitivity.md"):
         for language, code in re.findall(
             r"^```(sh|python)\n(.*?)^```$", page.read_text(), re.S | re.M
@@ -99,7 +93,7 @@ def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):
                 for file in Path("samples").iterdir() if words == ["samples"] else ():
                     file.write_text(file.read_text().replace("n = 20_000", "n = 64"))
     assert "mm" in capsys.readouterr().out
-    made = {path.name for path in tmp_path.iterdir()}
+    made = {path.name for path in here.iterdir()}
     assert made == {
         "samples",
         "results.zarr",
@@ -133,16 +127,12 @@ def test_blocks_show_the_measured_numbers():
     made("evidence.document", "--check")
 
 
-def test_howto_scene_files_are_read(tmp_path):
-    from viscoroll.presets import read_roller
-
-    for text in (
-        text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")
-    ):
-        if text.startswith("[heat]"):  # of a run file
-            continue
-        (tmp_path / "scene.toml").write_text(text)
-        assert read_roller(tmp_path / "scene.toml").scene()
+@pytest.mark.usefixtures("here")
+def test_howto_scene_files_are_read():
+    for page in (ROOT / "docs/howto").glob("*.md"):
+        for text in blocks(page, "toml"):
+            # [heat] is of a run file
+            assert text.startswith("[heat]") or of_roller(text).scene()
 
 
 def test_forms_of_an_input_are_read(tmp_path):

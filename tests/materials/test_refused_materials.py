@@ -40,21 +40,9 @@ pytestmark = pytest.mark.usefixtures("here")
 
 
 @cache
-def fitted():
-    """A fit of E."""
-    return vr.identify(roller(), ranges("E"), resistance(), starts=1)
-
-
-@cache
 def wide():
     """A grid of several alphas."""
     return vr.tables.build(PAPER, [0.1, 2.0], delta=[0.0, 0.01], alpha=[1.0, 16.0])
-
-
-@cache
-def narrow():
-    """A law of some alphas."""
-    return vr.tables.law(alpha=(1, 2))
 
 
 DECADES = np.logspace(-1, 1, 11)
@@ -102,10 +90,10 @@ REFUSED = [
     *each(
         None,
         {
-            "line 4 is not a row of numbers": lambda: read_column(
+            "line 4 ('x') is not a row of numbers": lambda: read_column(
                 file("V0;mu\n1;0.1\n2;0.2\nx", "starts.csv"), "V0", "1"
             ),
-            "line 4 has 1 cells": lambda: read_column(
+            "line 4 ('3') has 1 cells": lambda: read_column(
                 file("V0;mu\n1;0.1\n2;0.2\n3", "starts.csv"), "V0", "1"
             ),
         },
@@ -134,8 +122,8 @@ REFUSED = [
                 1e7, 0.49, [0.2], [0.1], k=[1.0]
             ),
             "measured | a vr.Measured": lambda: vr.Material.elastic(1e6, 0.5, measured=(1.0, 2.0)),
-            "shift has several factors for one temperature: must be one factor for each "
-            "temperature": lambda: vr.fit_prony(
+            "shift has several factors for one temperature (to 0.5 K): must be one "
+            "for each": lambda: vr.fit_prony(
                 [DMA[0]] * 2,
                 [DMA[1]] * 2,
                 [DMA[2]] * 2,
@@ -174,16 +162,22 @@ REFUSED = [
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
             "(39,) | (40,)": lambda: vr.Resistance(HUMP, HUMP[:-1], sigma=0.1),
-            "V0 of the record is not given": lambda: fitted().predict(vr.Coastdown(TIMES, TIMES)),
+            "V0 of the record is not given": (
+                lambda: vr.identify(roller(), ranges("E"), resistance(), starts=1).predict(
+                    vr.Coastdown(TIMES, TIMES)
+                )
+            ),
             "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
-            "as it resists: reverse its sign": lambda: vr.Resistance(
+            "since it resists; reverse its sign": lambda: vr.Resistance(
                 HUMP, -resistance().M, sigma=0.01
             ),
             "left out | given.nc is the law of one material": lambda: vr.load_law(
                 netcdf(law_file()), 11.0
             ),
             "alpha = None: must be in [1, 2], the range of | given.nc (`viscoroll tables law "
-            "--alpha LOW:HIGH` writes another range)": lambda: vr.load_law(netcdf(narrow())),
+            "--alpha LOW:HIGH` writes another range)": lambda: vr.load_law(
+                netcdf(vr.tables.law(alpha=(1, 2)))
+            ),
             "alpha | must be": lambda: vr.load_law(netcdf(grid())),
             "alpha = nan: must be": lambda: vr.load_law(netcdf(grid()), alpha=nan),
             "alpha = 11.0: must be left out | has no axis alpha": lambda: vr.load_law(
@@ -226,7 +220,7 @@ REFUSED = [
                 "unknown": {"E": (1e6, 2e6)}
             },
             "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
-            "more points, or": {"data": vr.Resistance(0.1, 0.1)},
+            "more points, fewer unknowns": {"data": vr.Resistance(0.1, 0.1)},
             "name = 'a': must be different for each record": {
                 "data": [vr.Resistance(HUMP, sigma=0.1, name="a")] * 2
             },
@@ -235,10 +229,10 @@ REFUSED = [
                 "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
             },
             "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
-            "run: V0 | a number: the data do not determine it": {
+            "run: V0 | a number, since no data determine it": {
                 "data": [vr.Coastdown(TIMES, sigma=0.1)]
             },
-            "temperature = 60.0 | given with shift={'material': ...}": {
+            "temperature = 60.0 | given with shift={'material': vr.WLF(": {
                 "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
             },
             "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},
@@ -277,7 +271,7 @@ REFUSED = [
         {
             "columns = 'abc' (a text): must be a dict, as {'frequency'": {"columns": "abc"},
             "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
-            "units | must be (frequency, moduli)": [
+            "units | must be (unit of frequency, of moduli)": [
                 {"units": units} for units in (("MPa", "Hz"), "Hz", ("Hz", 1.0))
             ],
         },
@@ -285,18 +279,18 @@ REFUSED = [
     *each(
         vr.fit_prony,
         {
-            "loss has 0 points in curve 2: must be as many as omega, 20": {
+            "loss has 0 points in curve 2: must be as many as omega has, 20": {
                 "omega": [OMEGA] * 2,
                 "storage": [DMA[1]] * 2,
                 "loss": [DMA[2]],
                 "temperature": [0.0, 20.0],
             },
-            "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap: "
+            "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap; "
             "leave": {"temperature": [20.0, 0.0]},
-            "temperature has shape (1,): must be one for each of the 2 curves": {
+            "temperature has shape (1,): must be one number for each of the 2 curves": {
                 "temperature": [20.0]
             },
-            "omega has no points for curve 2: must be one frequency or more": {
+            "omega has no points for curve 2: must be one or more in each curve": {
                 "omega": [DECADES, []],
                 "storage": [DECADES, []],
                 "loss": [DECADES, []],
@@ -348,12 +342,12 @@ REFUSED = [
             "omega | column": (1.0, 1.0, 1.0),
             "omega | within a factor": ([1e-20, 1.0, 1e20], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]),
             "storage has no plateau at low frequencies (0.0001 at omega = 0.01): must be that "
-            "of a solid, whose": (
+            "of a solid, which": (
                 DMA[0],
                 DMA[0] ** 2,
                 DMA[0],
             ),
-            "storage is given: must be left out: the result of read_dma contains it; write "
+            "storage is given: must be left out, since the result of read_dma contains it; write "
             "modes=5": (
                 vr.DynamicModuli(*DMA),
                 5,
@@ -364,6 +358,7 @@ REFUSED = [
     *each(
         partial(vr.fit_relaxation, STEP),
         {
+            "relaxation is not given: must be given beside t": {},
             "temperature | a single number": {
                 "relaxation": 1.0 + np.exp(-STEP),
                 "temperature": [20.0],
@@ -371,6 +366,10 @@ REFUSED = [
             "relaxation rises with time from 1.001 to 2: must be a relaxation modulus, which "
             "falls (a creep": 2.0 - np.exp(-STEP),
         },
+    ),
+    *each(
+        partial(vr.fit_relaxation, vr.RelaxationModulus(STEP, 1.0 / STEP, mode="shear")),
+        {"relaxation or mode is given: must be left out": [STEP, {"mode": "tension"}]},
     ),
     *each(
         vr.Bodies,
@@ -389,26 +388,26 @@ REFUSED = [
         partial(vr.fit_prony, *DMA),
         {
             "reference is given, but temperature is not": {"reference": 20.0},
-            "temperature | one for each point": {"temperature": [[20.0]]},
+            "temperature | one number for each point": {"temperature": [[20.0]]},
             "temperature rises from 20 to 25 °C in steps of at most 0.5 K: must be equal "
             "within 1 K in each": {"temperature": np.linspace(20.0, 25.0, 20)},
-            "omega has shape (20,): must be one for each point, of shape (0,)": {"temperature": []},
-            "reference = 30.0: must be within [20.0, 20.0]": {
+            "omega has shape (20,): must be one number for each point, (0,)": {"temperature": []},
+            "reference = 30.0: must be within the temperatures of the curves, 20.0 to 20.0 °C": {
                 "temperature": 20.0,
                 "reference": 30.0,
             },
-            "shift = 1 at 0 C and 10 at 20 C | shift factors a_T (time divided by time at the "
+            "shift = 1 at 0 °C and 10 at 20 °C | shift factors a_T (time divided by time at the "
             "reference), which decrease with temperature, in the order of the curves": {
                 "temperature": np.repeat([20.0, 0.0], 10),
                 "shift": [10.0, 1.0],
             },
-            "reference = 10.0: must be 0.0, 20.0, whose factors shift lists; for another one "
+            "reference = 10.0: must be one of 0.0, 20.0 °C, whose factors shift lists; for others "
             "give shift as a function": {
                 "temperature": np.repeat([20.0, 0.0], 10),
                 "shift": [0.1, 1.0],
                 "reference": 10.0,
             },
-            "shift = 0: must be > 0: factors a_T, not their logarithms": {
+            "shift = 0: must be > 0: give the factors a_T, not their logarithms": {
                 "temperature": np.repeat([0.0, 20.0], 10),
                 "shift": [2.0, 0.0],
             },

@@ -7,7 +7,7 @@ from math import inf, nan, pi
 import numpy as np
 import pytest
 import tolerances as tol
-from calls import HARD, MANY, PAPER, RUBBER, SERIES, SI, STEEL, TREAD, pair
+from calls import HARD, PAPER, RUBBER, SERIES, SI, STEEL, TREAD, pair
 from closeness import close
 
 import viscoroll as vr
@@ -33,14 +33,17 @@ def test_cylinder_and_scene():
     E_prime = pi * 2.3e5 / (1.0 - 0.49**2)
     load = 35.5 * 9.81
     assert scene == vr.presets.PAPER_SECTION_5
-    assert close(cylinder.load, load, tol.SCENE)
-    assert close(cylinder.l0, math.sqrt(32.0 * 0.1 * load / (E_prime)), tol.SCENE)
-    assert close(scene.alpha, 10.7 / 0.97, tol.SCENE)
-    assert close(scene.kappa, math.sqrt(E_prime * 0.1 / (32.0 * load)), tol.SCENE)
-    assert close(scene.gamma, load * 10.7**2 / (35.5 * 0.1), tol.SCENE)
+    for found, exact in (
+        (cylinder.load, load),
+        (cylinder.l0, math.sqrt(32.0 * 0.1 * load / E_prime)),
+        (scene.alpha, 10.7 / 0.97),
+        (scene.kappa, math.sqrt(E_prime * 0.1 / (32.0 * load))),
+        (scene.gamma, load * 10.7**2 / (35.5 * 0.1)),
+        (vr.Cylinder(**SI | {"nu": 0.5}).E_prime, pi * 2.3e5 / 0.75),
+        (vr.Cylinder(**SI, plane="stress").E_prime, pi * 2.3e5),
+    ):
+        assert close(found, exact, tol.SCENE)
     # limits that are allowed
-    assert close(vr.Cylinder(**SI | {"nu": 0.5}).E_prime, pi * 2.3e5 / 0.75, tol.SCENE)
-    assert close(vr.Cylinder(**SI, plane="stress").E_prime, pi * 2.3e5, tol.SCENE)
     assert vr.Cylinder(**SI | {"T_epsilon": 0.97}).scene().alpha == 1.0
     assert vr.Scene(1.0, 1e-300, 1e-300).alpha == 1.0
 
@@ -75,8 +78,9 @@ def test_moduli_and_times_of_pairs():
     on_steel = pair(RUBBER, STEEL)
     under_steel = pair(STEEL, RUBBER)
     on_hard = pair(RUBBER, HARD)
-    assert close(2.0 / on_steel.E_prime, 0.75 / (pi * 2.3e5) + 0.91 / (pi * 2e11), tol.SCENE)
-    assert close(on_steel.pair.share, 0.75 / 2.3e5 / (0.75 / 2.3e5 + 0.91 / 2e11), tol.SCENE)
+    soft, hard = 0.75 / 2.3e5, 0.91 / 2e11
+    assert close(2.0 / on_steel.E_prime, (soft + hard) / pi, tol.SCENE)
+    assert close(on_steel.pair.share, soft / (soft + hard), tol.SCENE)
     assert under_steel.E_prime == on_steel.E_prime
     assert close(under_steel.pair.share + on_steel.pair.share, 1.0, tol.SCENE)
     for found, share in ((pair(RUBBER, rigid), 1.0), (pair(rigid, RUBBER), 0.0)):
@@ -140,19 +144,16 @@ def test_constants_of_lsdyna_and_bulk_terms():
     )
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
-        vr.Material.ansys(18e6, 0.5, TERMS / 6e6, [0.1, 4.0]),
-        vr.Material.comsol(3e6, 0.5, TERMS, [0.1, 4.0]),
-        vr.Material.lsdyna(TERMS, [10.0, 0.25], nu=0.5, G_inf=1e6),
-    ],
-)
-def test_an_incompressible_material_by_programs(given):
+def test_an_incompressible_material_by_programs():
     """G(t) = 1 + 2 exp(-t/0.1 s) + 3 exp(-t/4 s) MPa, nu = 1/2."""
     t = np.array([0.0, 1e-4, 0.3, 7.0, 1e200])
     exact = 3e6 + 6e6 * np.exp(-t / 0.1) + 9e6 * np.exp(-t / 4.0)
-    assert close(given.relaxation(t), exact, tol.MATERIAL)
+    for given in (
+        vr.Material.ansys(18e6, 0.5, TERMS / 6e6, [0.1, 4.0]),
+        vr.Material.comsol(3e6, 0.5, TERMS, [0.1, 4.0]),
+        vr.Material.lsdyna(TERMS, [10.0, 0.25], nu=0.5, G_inf=1e6),
+    ):
+        assert close(given.relaxation(t), exact, tol.MATERIAL)
 
 
 def test_series():
@@ -174,7 +175,6 @@ def test_arrays_of_materials():
     """Arrays of materials: one of the two may be shared, and an array of materials is a
     material.
     """
-    assert (MANY.shape, vr.Prony([1.0], [1.0]).shape) == ((2,), ())
     assert vr.Prony([1.0, 2.0], [[1.0, 0.1], [2.0, 0.1]])[1] == vr.Prony([1.0, 2.0], [2.0, 0.1])
     assert vr.Prony.creep(
         [[0.3, 0.6], [0.2, 0.7]], [1.0, 0.1], alpha=[10.0, 10.000000000000002]

@@ -4,7 +4,6 @@ digest and its store.
 
 import re
 import tomllib
-from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -22,9 +21,11 @@ from viscoroll.runs.run_records import identity
 from viscoroll.runs.run_store import block_inputs, columns_of, roll_block
 from viscoroll.runs.sensitivity import sobol_indices
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::viscoroll.ModelWarning"
-)  # the paper's own scene is beyond the model
+pytestmark = [
+    pytest.mark.usefixtures("here"),
+    # the paper's own scene is beyond the model
+    pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
+]
 
 SI_UNITS = {
     "V": "m s-1",
@@ -36,22 +37,6 @@ SI_UNITS = {
     "force": "N m-1",
     "torque": "N m m-1",
 } | dict.fromkeys(("work_force", "slip_loss"), "J m-1")
-#: files of which others say no more by their numbers
-DIFFERENT = [
-    "a preset",
-    "compliances",
-    "rubber on rubber",
-    "own times",
-    "a driven roller",
-    "unsteady",
-]
-
-
-@pytest.fixture
-def read(tmp_path):
-    return partial(run_of, folder=tmp_path)
-
-
 # --- what the inputs of a motion mean ---
 
 
@@ -108,31 +93,25 @@ def alone(run, values, i):
     return vr.roll(scene, *call, **options)
 
 
-def largest(values):
-    return np.abs(np.nan_to_num(values)).max()
-
-
 @pytest.mark.parametrize("text", FILES.values(), ids=FILES)
-def test_every_motion_is_that_of_a_call(read, text):
-    run = read(text)
+def test_every_motion_is_that_of_a_call(text):
+    run = run_of(text)
     values, motions = roll_block(run, 0)
     columns = columns_of(run, values, motions)
-    fields = ("onset_time", *run.settings.fields)
     for i in range(0, len(motions.V), 4):
         one = alone(run, values, i)
-        for name in fields:
+        for name in ("onset_time", *run.settings.fields):
             expected = getattr(one, name)
-            assert close(
-                columns[name][i], expected, tol.RUN_SI, scale=largest(expected), what=(name, i)
-            )
+            scale = np.abs(np.nan_to_num(expected)).max()
+            assert close(columns[name][i], expected, tol.RUN_SI, scale=scale, what=(name, i))
 
 
 @pytest.mark.parametrize("file", sorted(FILES.keys() - {"a temperature each"}))
-def test_a_block_is_rolled_as_an_ensemble(read, file):
+def test_a_block_is_rolled_as_an_ensemble(file):
     """To the bit, however it is cut, but where the unit of time follows from the temperature of the
     first; and inputs keep to their ranges.
     """
-    run = read(FILES[file])
+    run = run_of(FILES[file])
     values, motions = roll_block(run, run.blocks - 1)
     few = {name: value[3:5] for name, value in values.items()}
     assert np.array_equal(roll_inputs(run, few, 2).V, motions.V[3:5], equal_nan=True)
@@ -140,23 +119,27 @@ def test_a_block_is_rolled_as_an_ensemble(read, file):
     assert ((np.asarray(mu) >= 0.05) & (np.asarray(mu) <= 0.6)).all()
 
 
-@pytest.mark.parametrize("file", DIFFERENT)
-def test_the_identity_is_of_every_number_but_n(read, file):
+@pytest.mark.parametrize(
+    "file",
+    # others say no more by their numbers
+    ["a preset", "compliances", "rubber on rubber", "own times", "a driven roller", "unsteady"],
+)
+def test_the_identity_is_of_every_number_but_n(file):
     """Of the file, whatever is told beside it; with blocks of one size a run is the same for any
     number of motions.
     """
     text = FILES[file]
     text = text.replace("[run]\n", "[run]\nblock = 4\n" * ("block =" not in text) or "[run]\n")
-    own = identity(read(text))
-    assert identity(read("# told\n" + text)) == own
-    assert identity(read(re.sub(r"\bn = \d+", "n = 1000", text))) == own
+    own = identity(run_of(text))
+    assert identity(run_of("# told\n" + text)) == own
+    assert identity(run_of(re.sub(r"\bn = \d+", "n = 1000", text))) == own
     for number in re.finditer(r"(?<![\w.-])-?\d[\w.+-]*", text):
         sign = number[0].startswith("-")
         changed = (
             text[: number.start()] + "-" * sign + "1" + number[0][sign:] + text[number.end() :]
         )
         try:
-            assert (identity(read(changed)) == own) == (
+            assert (identity(run_of(changed)) == own) == (
                 text[: number.start()].endswith("\nn = ")
             ), number
         except vr.FileError:
@@ -164,24 +147,22 @@ def test_the_identity_is_of_every_number_but_n(read, file):
 
 
 @pytest.mark.parametrize("file", ["numbers", "driven", "a driven roller"])
-def test_a_store_holds_the_run(read, tmp_path, file):
+def test_a_store_holds_the_run(file):
     """And what is exported of it: columns, what drove them, their units, their summaries."""
-    run = read(FILES[file].replace("[run]", "[run]\nquantiles = [0.5]"))
-    run_ensemble(run, tmp_path / "s.zarr", threads=2)
-    assert verify(tmp_path / "s.zarr").ok
-    export_netcdf(tmp_path / "s.zarr", tmp_path / "s.nc")
+    run = run_of(FILES[file].replace("[run]", "[run]\nquantiles = [0.5]"))
+    run_ensemble(run, "s.zarr", threads=2)
+    assert verify("s.zarr").ok
+    export_netcdf("s.zarr", "s.nc")
     blocks = [columns_of(run, *roll_block(run, block)) for block in range(run.blocks)]
     columns = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-    with xr.open_dataset(
-        tmp_path / "s.nc", group="motions", engine="h5netcdf", decode_times=False
-    ) as kept:
+    with xr.open_dataset("s.nc", group="motions", engine="h5netcdf", decode_times=False) as kept:
         for name, values in columns.items():
             assert np.array_equal(kept[name].values, values, equal_nan=True), name
             assert kept[name].attrs["long_name"]
         for name in ("V", "onset_time"):
             assert kept[name].attrs["units"] == (SI_UNITS[name] if run.si else "1")
         assert kept.attrs["quantities"] == ("in SI units" if run.si else "dimensionless")
-    found = open_run(tmp_path / "s.zarr").summaries
+    found = open_run("s.zarr").summaries
     for name in run.settings.summaries:
         told = found[f"{name}_mean"].attrs
         if run.si:
@@ -197,18 +178,20 @@ def test_a_store_holds_the_run(read, tmp_path, file):
 # --- which method ---
 
 
-def test_the_flow_map_where_many_start_in_one_scene(read):
+def test_the_flow_map_where_many_start_in_one_scene():
     """Chosen by the run: a block of slow starts does not get a finer one.  Of motions at rest there
     is none.
     """
     one = FILES["a preset"].replace("[correlation]\nV0.mu = 0.7\n", "")
     one = one[: one.index("[scene]")] + one[one.index("[start]") :].replace("block = 12", "")
-    run = read(one.replace("n = 30", f"n = {FLOW_PAYS}"))
+    run = run_of(one.replace("n = 30", f"n = {FLOW_PAYS}"))
     assert (run.mappable, run.method) == (True, "flow")
     values, motions = roll_block(run, 0)
     few = {name: value[3:4] for name, value in values.items()}
     assert roll_inputs(run, few, 2).V[0, 1] == motions.V[3, 1]
-    still = read(PAPER + '[start]\nV0 = 0.0\nomega0 = 0.0\n[run]\nn = 2\nt = 1e-3\nmethod = "flow"')
+    still = run_of(
+        PAPER + '[start]\nV0 = 0.0\nomega0 = 0.0\n[run]\nn = 2\nt = 1e-3\nmethod = "flow"'
+    )
     assert roll_block(still, 0)[1].V.tolist() == [[0.0], [0.0]]
 
 
@@ -216,7 +199,7 @@ SPREAD = '{ distribution = "uniform", loc = 0.05, scale = 0.1 }'
 
 
 @pytest.mark.parametrize("R", ["0.1", SPREAD])
-def test_a_start_in_pure_rolling(read, R):
+def test_a_start_in_pure_rolling(R):
     """omega0 = "rolling" is V0/R of each motion, in a dimensionless file V0; a flow map serves it
     too.
     """
@@ -225,9 +208,9 @@ def test_a_start_in_pure_rolling(read, R):
         "10.7\nT_sigma = 0.97\n"
     )
     start = f'[start]\nV0 = {SPREAD}\nomega0 = "rolling"\n[run]\nn = 8\nt = [0.0, 0.5]\n'
-    values, motions = roll_block(read(roller + start), 0)
+    values, motions = roll_block(run_of(roller + start), 0)
     assert close(motions.omega[:, 0], values["V0"] / values.get("R", 0.1), tol.UNITS)
-    run = read(PAPER + start + 'method = "flow"\n')
+    run = run_of(PAPER + start + 'method = "flow"\n')
     values, motions = roll_block(run, 0)
     assert (motions.omega[:, 0].tolist(), run.fastest) == (
         values["V0"].tolist(),
@@ -245,35 +228,35 @@ SAMPLED = (
 
 
 @pytest.fixture
-def sample(tmp_path):
+def sample():
     frame = pd.DataFrame(
         {"mass": [30.0, 40.0, 50.0], "modulus": [2e5, 3e5, 4e5], "name": ["a", "b", "c"]}
     )
-    frame.to_csv(tmp_path / "sample.csv")
+    frame.to_csv("sample.csv")
     return frame[["mass", "modulus"]]
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".nc", ".parquet"])
-def test_columns_of_a_file_share_their_row(read, tmp_path, sample, suffix):
+def test_columns_of_a_file_share_their_row(sample, suffix):
     if suffix == ".nc":
-        xr.Dataset.from_dataframe(sample).to_netcdf(tmp_path / "sample.nc", engine="h5netcdf")
+        xr.Dataset.from_dataframe(sample).to_netcdf("sample.nc", engine="h5netcdf")
     elif suffix == ".parquet":
         pytest.importorskip("pyarrow")
-        sample.to_parquet(tmp_path / "sample.parquet")
-    run = read(SAMPLED.replace(".csv", suffix).replace("n = 20", "n = 100"))
+        sample.to_parquet("sample.parquet")
+    run = run_of(SAMPLED.replace(".csv", suffix).replace("n = 20", "n = 100"))
     assert f"sample{suffix}" in run.inputs.dimensions
     values = block_inputs(run, 0)
     assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
     assert set(values["m"]) == {30.0, 40.0, 50.0}
 
 
-def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
+def test_a_file_by_two_names_is_one_file(here, sample):
     """Also by way of a link; its columns share their row, and cannot be told apart by Sobol
     indices.
     """
-    (tmp_path / "link.csv").symlink_to("sample.csv")
-    for other in ("./sample.csv", "link.csv", str(tmp_path / "sample.csv")):
-        run = read(
+    (here / "link.csv").symlink_to("sample.csv")
+    for other in ("./sample.csv", "link.csv", str(here / "sample.csv")):
+        run = run_of(
             SAMPLED.replace('"sample.csv", column = "modulus"', f'"{other}", column = "modulus"')
         )
         assert run.inputs.dimensions.count("sample.csv") == 1
@@ -281,27 +264,27 @@ def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
         assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
         refused(lambda run=run: sobol_indices(run, 16), "m, [cylinder] E = rows of sample.csv")
     text = SAMPLED.replace('"mass"', '"name"')
-    refused(lambda: read(text), "line 3", "'a' is not a number", error=vr.FileError)
+    refused(lambda: run_of(text), "line 3", "'a' is not a number", error=vr.FileError)
 
 
-def test_a_material_of_a_file_is_in_the_digest(read, tmp_path):
+def test_a_material_of_a_file_is_in_the_digest():
     text = CERTAIN.replace("E = 3e6\nnu = 0.5", 'file = "rubber.nc"')
     digests = set()
     for E in (3e6, 4e6):
         rubber = vr.Material(E, 0.5, vr.Prony([0.3, 1.5], [2e-2, 1e-5]))
-        rubber.to_netcdf(tmp_path / "rubber.nc")
-        run = read(text)
+        rubber.to_netcdf("rubber.nc")
+        run = run_of(text)
         digests.add(run.digest)
         assert run.inputs.content["material"] == rubber
     assert len(digests) == 2
 
 
-def test_inputs_have_indices(read):
+def test_inputs_have_indices():
     """Rolling resistance spreads by the strengths of the modes that it is made of, less by friction
     and the start.
     """
     text = FILES["rubber on rubber"].replace('"lost_to_slip"]', '"torque"]')
-    found = sobol_indices(read(text), 64, threads=1)
+    found = sobol_indices(run_of(text), 64, threads=1)
     inputs = {"mu", "V0", "E_1", "E_2", "tau_1", "E", "base_E", "base_E_1", "base_tau_1"}
     assert set(found["input"].values) == inputs
     total = found.lost_to_rolling_ST.isel(t=-1)

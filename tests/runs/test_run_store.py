@@ -5,6 +5,7 @@ right.
 import errno
 import itertools
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,11 +14,13 @@ from contextlib import contextmanager
 from functools import partial
 
 import pytest
+from places import content
 from refusals import refused
+from run_files import run_of
 
 import viscoroll as vr
 from viscoroll.core import files
-from viscoroll.runs import export_netcdf, open_run, read_run, run_ensemble, verify
+from viscoroll.runs import export_netcdf, open_run, run_ensemble, verify
 from viscoroll.runs.run_store import locked
 
 refused_file = partial(refused, error=vr.FileError)
@@ -50,39 +53,20 @@ INTERRUPT_SECONDS = 20.0
 
 
 @pytest.fixture
-def run_file(tmp_path):
-    path = tmp_path / "run.toml"
-    path.write_text(RUN)
-    return path
+def run(tmp_path):
+    return run_of(RUN, tmp_path)
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """A store that nothing happened to."""
     folder = tmp_path_factory.mktemp("whole")
-    (folder / "run.toml").write_text(RUN)
-    assert run_ensemble(read_run(folder / "run.toml"), folder / "whole.zarr", threads=2) == 12
+    assert run_ensemble(run_of(RUN, folder), folder / "whole.zarr", threads=2) == 12
     return folder / "whole.zarr"
 
 
-def content(store):
-    """Every file of a store."""
-    return {
-        str(path.relative_to(store)): path.read_bytes()
-        for path in store.rglob("*")
-        if path.is_file()
-    }
-
-
-def copied(store, target):
-    for name, data in content(store).items():
-        (target / name).parent.mkdir(parents=True, exist_ok=True)
-        (target / name).write_bytes(data)
-    return target
-
-
 def test_damaged_motions_are_not_exported(tmp_path, whole):
-    store = copied(whole, tmp_path / "store.zarr")
+    store = shutil.copytree(whole, tmp_path / "store.zarr")
     data = bytearray((store / "motions/V/7.0").read_bytes())
     data[-1] ^= 1
     (store / "motions/V/7.0").write_bytes(data)
@@ -106,9 +90,9 @@ PARTS = [
 
 
 @pytest.mark.parametrize("change", ["flip", "truncate", "remove"])
-def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
+def test_damage_is_found_and_put_right(run, tmp_path, whole, change):
     """At its own time, to each kind of file: values and records of a block, summaries, metadata."""
-    store = copied(whole, tmp_path / "store.zarr")
+    store = shutil.copytree(whole, tmp_path / "store.zarr")
     exact = content(whole)
     for name in PARTS if change == "flip" else PARTS[::3]:
         data = bytearray((store / name).read_bytes())
@@ -121,8 +105,7 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
             refused_file(lambda: verify(store), "start")
         else:
             assert not verify(store).ok, name
-        made = run_ensemble(read_run(run_file), store)
-        assert made == (1 if "7" in name else 0), name
+        assert run_ensemble(run, store) == ("7" in name), name
         assert content(store) == exact, name
 
 
@@ -145,19 +128,18 @@ def disk_for(writes, monkeypatch):
             yield
 
 
-def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
+def test_a_full_disk(run, tmp_path, whole, monkeypatch):
     """At any of the writes: one line, and the same command goes on."""
     store = tmp_path / "store.zarr"
     for writes in (1, 60, 300):
         with disk_for(writes, monkeypatch):
-            run_ensemble(read_run(run_file), store, threads=2)
-    run_ensemble(read_run(run_file), store)
+            run_ensemble(run, store, threads=2)
+    run_ensemble(run, store)
     assert content(store) == content(whole)
 
 
-def test_other_folders_are_refused(run_file, tmp_path, whole):
-    run_file.write_text(RUN.replace("seed = 3", "seed = 4"))
-    run = read_run(run_file)
+def test_other_folders_are_refused(tmp_path, whole):
+    run = run_of(RUN.replace("seed = 3", "seed = 4"), tmp_path)
     thesis = tmp_path / "thesis"
     thesis.mkdir()
     (thesis / "chapter.tex").write_text("dear")
@@ -179,37 +161,34 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
 
 
 @pytest.fixture
-def smaller(run_file, tmp_path):
-    """A store of 350 of the motions, the last block of which is a half; then the run file asks for
-    all of them.
-    """
-    run_file.write_text(RUN.replace("n = 1200", "n = 350"))
-    assert run_ensemble(read_run(run_file), tmp_path / "store.zarr", threads=2) == 4
-    run_file.write_text(RUN)
+def smaller(tmp_path):
+    """A store of 350 of the motions, the last block of which is a half."""
+    run = run_of(RUN.replace("n = 1200", "n = 350"), tmp_path)
+    assert run_ensemble(run, tmp_path / "store.zarr", threads=2) == 4
     return tmp_path / "store.zarr"
 
 
-def test_a_run_grows(run_file, smaller, whole):
+def test_a_run_grows(smaller, run, whole):
     """Its whole blocks stay as they are, and all files become those of the larger run."""
     kept = {path: path.stat().st_mtime_ns for path in smaller.glob("records/00000000[012]")}
     assert len(kept) == 3
-    assert run_ensemble(read_run(run_file), smaller, threads=2) == 9
+    assert run_ensemble(run, smaller, threads=2) == 9
     assert {path: path.stat().st_mtime_ns for path in kept} == kept
     assert content(smaller) == content(whole)
     assert verify(smaller).ok
     assert len(open_run(smaller)) == 1200
 
 
-def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkeypatch):
+def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch):
     """Until then it is the smaller store or one that is not finished, never one of fewer motions
     than it says.
     """
     for writes in (0, 20, 100):
         with disk_for(writes, monkeypatch):
-            run_ensemble(read_run(run_file), smaller, threads=1)
+            run_ensemble(run, smaller, threads=1)
         assert not verify(smaller).ok
         refused_file(lambda: open_run(smaller), "repairs it")
-    run_ensemble(read_run(run_file), smaller)
+    run_ensemble(run, smaller)
     assert content(smaller) == content(whole)
 
 
@@ -231,41 +210,45 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
         ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
     ],
 )
-def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, words):
+def test_a_run_that_cannot_grow_is_refused(tmp_path, before, now, words):
     """And the store stays as it was."""
     text = RUN.replace(MU, "") + f"{before}\n"
     if before.startswith("block"):
         text = text.replace("block = 100\n", "", 1)
     store = tmp_path / "store.zarr"
-    run_file.write_text(text.replace("n = 1200", "n = 350"))
-    run_ensemble(read_run(run_file), store, threads=2)
+    run_ensemble(run_of(text.replace("n = 1200", "n = 350"), tmp_path), store, threads=2)
     was = content(store)
-    run_file.write_text(text.replace("n = 1200", now))
-    refused_file(lambda: run_ensemble(read_run(run_file), store), words, "give another folder")
+    larger = run_of(text.replace("n = 1200", now), tmp_path)
+    refused_file(lambda: run_ensemble(larger, store), words, "give another folder")
     assert content(store) == was
 
 
-def begun(run_file, store, **options):
-    """The program in a process of its own, at work on a run."""
-    command = [sys.executable, "-m", "viscoroll", "ensemble", run_file, "-o", store]
-    return subprocess.Popen(
-        [*command, "--threads", "2"], stdout=subprocess.DEVNULL, text=True, **options
+def begun(text, folder, **options):
+    """The program in a process of its own, at work on a run, and its store."""
+    (folder / "run.toml").write_text(text)
+    command = ["viscoroll", "ensemble", "run.toml", "-o", "store.zarr", "--threads", "2"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", *command],
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        **options,
     )
+    return process, folder / "store.zarr"
 
 
-def test_a_killed_run_goes_on(run_file, tmp_path, whole):
+def test_a_killed_run_goes_on(run, tmp_path, whole):
     """SIGKILL of everything: what is done stays as it is, and at most one block a worker is made
     again.
     """
-    store = tmp_path / "store.zarr"
-    process = begun(run_file, store, start_new_session=True)
+    process, store = begun(RUN, tmp_path, start_new_session=True)
     while process.poll() is None and len(list(store.glob("records/0*"))) < 3:
         time.sleep(0.001)
     os.killpg(process.pid, signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
     done = {path: path.stat().st_mtime_ns for path in store.glob("records/0*")}
     assert 3 <= len(done) < 12
-    assert run_ensemble(read_run(run_file), store) == 12 - len(done)
+    assert run_ensemble(run, store) == 12 - len(done)
     assert {path: path.stat().st_mtime_ns for path in done} == done
     assert content(store) == content(whole)
 
@@ -281,12 +264,9 @@ def test_an_interrupt_answers_at_once(tmp_path):
     """
     long = RUN.replace("n = 1200", "n = 400_000").replace("block = 100", "block = 100_000")
     long = long.replace('"all"', '"summaries"')
-    (tmp_path / "long.toml").write_text(long)
     # nothing else runs in this process
-    process = begun(
-        "long.toml", "long.zarr", cwd=tmp_path, stderr=subprocess.PIPE, preexec_fn=_heeding
-    )
-    while not (tmp_path / "long.zarr/records/start").exists():
+    process, store = begun(long, tmp_path, stderr=subprocess.PIPE, preexec_fn=_heeding)
+    while not (store / "records/start").exists():
         assert process.poll() is None, process.communicate()
         time.sleep(0.05)
     time.sleep(0.3)
@@ -294,7 +274,7 @@ def test_an_interrupt_answers_at_once(tmp_path):
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
     kept = (
-        "interrupted: 0 of 4 blocks are complete and are kept in long.zarr; the same call "
+        "interrupted: 0 of 4 blocks are complete and are kept in store.zarr; the same call "
         "resumes the run"
     )
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

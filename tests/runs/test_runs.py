@@ -37,21 +37,18 @@ summaries = [
 """  # noqa: E501
 
 
-@pytest.fixture
-def run(tmp_path):
-    return run_of(RUN, tmp_path)
-
-
 # --- designs ---
+
+
+def points_of_blocks(design, seed, n, dimensions, edges):
+    """The points of these blocks of a design, one block after the other."""
+    return [sampling.points(design, seed, n, dimensions, *edge, b) for b, edge in enumerate(edges)]
 
 
 def test_a_latin_hypercube_fills_every_stratum():
     """Every one once, for any number of them and however they are cut into blocks."""
     for n in (1, 2, 3, 7, 64, 1000, 1025):
-        edges = [(0, n // 3), (n // 3, n)]
-        every = np.hstack(
-            [sampling.points("latin", 1, n, 3, *edge, b) for b, edge in enumerate(edges)]
-        )
+        every = np.hstack(points_of_blocks("latin", 1, n, 3, [(0, n // 3), (n // 3, n)]))
         for row in every:
             assert np.array_equal(np.sort((row * n).astype(int)), np.arange(n)), n
     assert np.abs(np.corrcoef(every) - np.eye(3)).max() < tol.LATIN_CORRELATION
@@ -108,7 +105,8 @@ def test_moments_and_quantiles(size):
     assert wide.spread == wide.merge(Histogram.of(np.array([1e200]))).spread == np.inf
 
 
-def test_merged_summaries_are_those_of_all(run):
+def test_merged_summaries_are_those_of_all(tmp_path):
+    run = run_of(RUN, tmp_path)
     blocks = [roll_block(run, block) for block in range(run.blocks)]
     total = merge_summaries(summarise(motions, run.settings.summaries) for _, motions in blocks)
     assert sum(total.statuses.values()) == run.settings.n
@@ -133,12 +131,12 @@ def test_a_cut_tail_keeps_its_digits():
 @pytest.mark.parametrize("design", ["random", "latin", "sobol"])
 def test_points_depend_on_seed_and_block_alone(design):
     edges = [(0, 300), (300, 600), (600, 1000)]
-    forward = [sampling.points(design, 3, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
+    forward = points_of_blocks(design, 3, 1000, 2, edges)
     backward = [sampling.points(design, 3, 1000, 2, *edges[b], b) for b in (2, 1, 0)][::-1]
     assert all(map(np.array_equal, forward, backward))
     every = np.hstack(forward)
     assert every.min() > 0.0
     assert every.max() < 1.0
     assert min(stats.kstest(row, "uniform").pvalue for row in every) > tol.KOLMOGOROV
-    other = [sampling.points(design, 4, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
+    other = points_of_blocks(design, 4, 1000, 2, edges)
     assert not np.array_equal(every, np.hstack(other))

@@ -14,9 +14,11 @@ from scipy import stats
 import viscoroll as vr
 from viscoroll.runs.sensitivity import sobol_indices
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::viscoroll.ModelWarning"
-)  # the paper's own scene is beyond the model
+pytestmark = [
+    pytest.mark.usefixtures("here"),
+    # the paper's own scene is beyond the model
+    pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
+]
 
 N = 1024
 GAMMA = 1e4
@@ -71,32 +73,25 @@ summaries = ["V", "onset_time"]
 """
 
 
-@pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
-    """Every test runs in a folder of its own."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 @pytest.fixture(scope="module")
 def sliding(tmp_path_factory):
     return sobol_indices(run_of(SLIDING, tmp_path_factory.mktemp("sliding")), N)
 
 
-def inside(indices, name, key, name_of_input, exact, k=None):
+def inside(indices, name, key, name_of_input, exact, k):
     """Whether an exact index lies inside the stated interval, which must say something."""
-    at = {"input": name_of_input} | ({} if k is None else {"t": indices["t"].values[k]})
-    value, half = (float(indices[f"{name}_{kind}"].sel(at)) for kind in (key, f"{key}_conf"))
+    value, half = (
+        float(indices[f"{name}_{kind}"].sel(input=name_of_input)[k])
+        for kind in (key, f"{key}_conf")
+    )
     return abs(value - exact) <= half <= tol.SENSITIVITY_INTERVAL
 
 
 # --- closed forms ---
 
-
-def product_variance():
-    return np.prod([law.moment(2) for law in FACTORS.values()]) - np.prod(
-        [law.mean() ** 2 for law in FACTORS.values()]
-    )
+PRODUCT_VARIANCE = np.prod([law.moment(2) for law in FACTORS.values()]) - np.prod(
+    [law.mean() ** 2 for law in FACTORS.values()]
+)
 
 
 def test_a_linear_motion_shares_its_variance(sliding):
@@ -105,8 +100,8 @@ def test_a_linear_motion_shares_its_variance(sliding):
         for name, slopes in (("V", (1.0, GAMMA * t)), ("x", (t, GAMMA * t**2 / 2))):
             parts = np.square(slopes) * spread
             for name_of_input, exact in zip(("V0", "mu"), parts / parts.sum(), strict=True):
-                assert inside(sliding, name, "S1", name_of_input, exact, k)
-                assert inside(sliding, name, "ST", name_of_input, exact, k)
+                for key in ("S1", "ST"):
+                    assert inside(sliding, name, key, name_of_input, exact, k)
 
 
 def test_an_input_without_influence_has_index_zero(sliding):
@@ -118,7 +113,7 @@ def test_an_input_without_influence_has_index_zero(sliding):
 
 def test_intervals_err_on_the_wide_side():
     """Of 20 seeds, at least the 95 % that the intervals state hold the exact index."""
-    exact = FACTORS["mu"].mean() ** 2 * FACTORS["gamma"].var() / product_variance()
+    exact = FACTORS["mu"].mean() ** 2 * FACTORS["gamma"].var() / PRODUCT_VARIANCE
     held = 0
     for seed in range(20):
         indices = sobol_indices(run_of(PRODUCT.replace("n = 1\n", f"n = 1\nseed = {seed}\n")), 128)
@@ -150,7 +145,7 @@ def test_a_product_has_total_above_first():
     """Y = a b: S1 = var(a) E(b)^2 / var(Y), ST = var(a) E(b^2) / var(Y)."""
     indices = sobol_indices(run_of(PRODUCT), N)
     for name, other in (("mu", "gamma"), ("gamma", "mu")):
-        share = FACTORS[name].var() / product_variance()
+        share = FACTORS[name].var() / PRODUCT_VARIANCE
         assert inside(indices, "V", "S1", name, share * FACTORS[other].mean() ** 2, 0)
         assert inside(indices, "V", "ST", name, share * FACTORS[other].moment(2), 0)
     assert (indices["V_ST"] > indices["V_S1"]).all()

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import tolerances as tol
+from calls import SOFT, STEEL, pair
 from closeness import close
 
 import viscoroll as vr
@@ -15,21 +16,16 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
 )  # the paper's own scene is beyond the model
 
-ROLLER = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
-RUBBER = vr.Material(3e6, 0.49, vr.Prony([0.3, 0.6], [2e-2, 1e-3]), name="rubber", density=1130.0)
-ON_STEEL = vr.Cylinder(
-    R=0.05, m=9.0, material=RUBBER, base=vr.Material.elastic(2e11, 0.3), mu=0.6, load=2000.0
-)
+ROLLER = vr.presets.PAPER_CYLINDER
 TIMES = np.linspace(0.0, 2.0, 9)
 DOWN = -0.05
 WORKS = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
 
-def units_of(roller, load):
+def units_of(roller, P):
     """By hand: R, T_ref, the load on the plane, and what is made of them."""
     R = roller.R
     T = roller.T_ref
-    P = load
     found = {
         "t": T,
         "x": R,
@@ -96,16 +92,20 @@ STATE = (
 PARTS = ("M_half_space", "M_cylinder", "dM_half_space_dV", "dM_cylinder_dV")
 MOTION = ("V", "omega", "x", "angle", "delta", "regime")
 DRIVEN = (*MOTION, "force", "torque", *WORKS)
+
+
+def of_states(*fields):
+    """The call of contact, and these fields."""
+    return (
+        lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=fields),
+        fields,
+    )
+
+
 #: the call of a body in units, the fields of its result, and how near they are
 CALLS = {
-    "contact": (
-        lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, "N")),
-        (*STATE, "N"),
-    ),
-    "two bodies": (
-        lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, *PARTS)),
-        (*STATE, *PARTS),
-    ),
+    "contact": of_states(*STATE, "N"),
+    "two bodies": of_states(*STATE, *PARTS),
     "stress": (
         lambda body, u: body.stress(np.linspace(-1e-3, 1e-3, 9) / u.l0, 0.05 / u.V, delta=1e-3),
         ("p", "tau"),
@@ -143,7 +143,10 @@ CALLS = {
 @pytest.mark.parametrize("name", CALLS)
 def test_the_dimensionless_call_in_other_units(name):
     call, fields = CALLS[name]
-    roller = {"two bodies": ON_STEEL, "from rest": vr.presets.RUBBER_CYLINDER}.get(name, ROLLER)
+    roller = {
+        "two bodies": pair(SOFT, STEEL, load=2e3),
+        "from rest": vr.presets.RUBBER_CYLINDER,
+    }.get(name, ROLLER)
     tilted = name in ("steady", "driven")
     unit = units_of(roller, roller.load * (np.cos(DOWN) if tilted else 1.0))
     found = call(roller, SimpleNamespace(**dict.fromkeys(unit, 1.0)))
@@ -163,9 +166,6 @@ def test_the_dimensionless_call_in_other_units(name):
 
 # --- many cylinders ---
 
-SLOW = np.array([1e-3, 1e-2, 2e-2])
-FAST = np.array([1e-3, 1e-3, 5e-3])
-SOLID = vr.Cylinder(R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=0.02, T_sigma=0.02, mu=0.3)
 MANY = {
     "mu and load": (
         ROLLER,
@@ -175,7 +175,10 @@ MANY = {
         vr.presets.RUBBER_CYLINDER,
         {"load": np.array([50.0, 200.0, 900.0]), "R": np.array([0.05, 0.1, 0.2])},
     ),
-    "times": (SOLID, {"T_epsilon": SLOW, "T_sigma": FAST}),
+    "times": (
+        ROLLER,
+        {"T_epsilon": np.array([1e-3, 1e-2, 2e-2]), "T_sigma": np.array([1e-3, 1e-3, 5e-3])},
+    ),
 }
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from calls import BELT, MEASURED, pair
 from closeness import close
 from run_files import run_of
 from scipy import stats
@@ -17,9 +18,7 @@ import viscoroll as vr
 from viscoroll.core.plots import draw
 from viscoroll.runs import estimate
 
-DATA = vr.Measured(0.06, 1884.0, 0.01, "dma.csv")
-RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)
-BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5)
+DATA = MEASURED.measured
 #: the speed at which the transit frequency of that contact is 628 1/s, a third of the last
 #: frequency of the data
 LAST = 2.866
@@ -53,15 +52,10 @@ def test_data_over_the_band_determine_M(growth, thickness):
     )
     omega = np.geomspace(1.0, 1e3, 31)
     fit = vr.fit_prony(omega, rubber.storage(omega), rubber.loss(omega)).material(nu=0.49)
-    bases = [
-        replace(each, thickness=thickness, measured=vr.Measured(1.0, 1e3, 0.0))
-        for each in (rubber, fit)
-    ]
+    given = {"thickness": thickness, "measured": vr.Measured(1.0, 1e3, 0.0)}
     true, found = (
-        vr.Cylinder(
-            R=0.1, m=35.0, mu=0.3, load=1e3, material=vr.Material.rigid(), base=each, coupled=False
-        )
-        for each in bases
+        pair(vr.Material.rigid(), replace(each, **given), load=1e3, coupled=False)
+        for each in (rubber, fit)
     )
     low, high = true.body_data.measured_speeds
     V = np.array([low, 5.0 * low, high / 5.0, high, 3.0 * high])
@@ -78,16 +72,14 @@ def test_data_over_the_band_determine_M(growth, thickness):
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-def test_curves_are_dashed_beyond(tmp_path):
+def test_curves_are_dashed_beyond(here):
     """Over speed, from a file, and over frequency: what is solid and what is dashed meet, and are
     all there is.
     """
-    BELT.contact(np.geomspace(0.01, 100.0, 81), delta=0.0, fields="M").to_xarray().to_netcdf(
-        tmp_path / "M.nc"
-    )
-    with xr.open_dataset(tmp_path / "M.nc") as stored:
+    BELT.contact(np.geomspace(0.01, 100.0, 81), delta=0.0, fields="M").to_xarray().to_netcdf("M.nc")
+    with xr.open_dataset("M.nc") as stored:
         over_speed = draw(stored)
-    for figure, low, high in ((over_speed, 0.0, LAST), (RUBBER.plot(), DATA.low, DATA.high)):
+    for figure, low, high in ((over_speed, 0.0, LAST), (MEASURED.plot(), DATA.low, DATA.high)):
         solid, dashed = figure.axes[0].get_lines()[:2]
         assert dashed.get_linestyle() == "--"
         x = solid.get_xdata()
@@ -97,7 +89,7 @@ def test_curves_are_dashed_beyond(tmp_path):
         assert (seen | beyond).all()
         assert np.count_nonzero(seen & beyond) == 1
         assert "dashed: outside the measured band" in figure.get_suptitle()
-    assert "dashed" not in replace(RUBBER, measured=None).plot().get_suptitle()
+    assert "dashed" not in replace(MEASURED, measured=None).plot().get_suptitle()
 
 
 RUN = """

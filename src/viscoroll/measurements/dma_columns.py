@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import FileError, ParameterError, describe_value, suggestion
+from ..core import FileError, ParameterError, described_error, suggestion
 from ..materials import ABSOLUTE_ZERO
 from .text_cells import MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
 from .text_table import Table, find_column
@@ -70,6 +70,15 @@ _LONG = sorted(
 #: words written together, as "storagemodulus", "Estor", "Phasenwinkel"
 _COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")
 _WORD = re.compile("|".join(_LONG))
+
+
+def unit_advice(name: str) -> str:
+    """Return the advice to state the unit of a quantity: the argument of the readers and, of
+    quantities of a DMA, the option of the command.
+    """
+    unit = {"1": "%"}.get(UNITS[name], UNITS[name])
+    option = f" (in a shell: --units '{name}={unit}')" * (name in QUANTITIES["dma"])
+    return f"give the unit of its numbers, as units={{{name!r}: {unit!r}}}{option}"
 
 
 def meanings(heading: str, row: str = "") -> list[Reading]:
@@ -135,11 +144,11 @@ def _parts(word: str) -> list[str]:
 
 #: degrees; temperatures without a unit that go above it are taken to be kelvins, in which DMA
 #: seldom goes below
-_KELVIN = 200.0
+KELVIN = 200.0
 #: quantity -> bounds of its numbers, and these in words
 _RANGES = {
     "phase angle": (-math.inf, 0.5 * math.pi, "below 90 degrees"),
-    "temperature": (ABSOLUTE_ZERO, math.inf, f"finite and above {ABSOLUTE_ZERO} °C"),
+    "temperature": (ABSOLUTE_ZERO, math.inf, f"above {ABSOLUTE_ZERO} °C"),
 }
 #: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
 CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*min|deg|°")
@@ -216,7 +225,7 @@ def columns_of(
             found = [each for each in found if _quantity_of_column(each.name) not in taken]
         faults = [_contradiction(each, heading, overruling) for each in found]
         if not table.has_numbers(index):
-            faults = ["no numbers"]
+            faults = ["it has no numbers"]
         if "" in faults:
             reading = found[faults.index("")]
             name = reading.name
@@ -241,8 +250,11 @@ def columns_of(
                 )
             )
         elif index in owners:
-            fault = f"column {heading!r}, named for {owners[index]}: {faults[0]}"
-            raise FileError(table.path, f"{fault}; you can name another column")
+            raise FileError(
+                table.path,
+                f"column {heading!r} is named for {owners[index]}, but {faults[0]}; or name "
+                "another column",
+            )
         else:
             others[heading or f"column {index}"] = faults[0] if faults else ""
     return columns, others
@@ -291,8 +303,12 @@ def _index(table: Table, heading: str) -> int:
     """
     found = find_column(table, heading)
     if found is None:
-        allowed = f"one of {', '.join(map(repr, table.headings))}{suggestion(str(heading), table.headings)}"  # noqa: E501
-        raise ParameterError("columns", describe_value(heading), allowed)
+        raise described_error(
+            "columns",
+            f"names {heading!r:.60}",
+            f"one of the headings {', '.join(map(repr, table.headings))}"
+            f"{suggestion(str(heading), table.headings)}",
+        )
     return found
 
 
@@ -319,9 +335,7 @@ def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]
     unit = meaning.unit
     if name in overruling or unit in NO_UNIT:
         return ""
-    problem = (
-        f"unit {unit!r} is not a unit of {name}: give units={{{name!r}: UNIT}}, as {UNITS[name]!r}"
-    )
+    problem = f"its unit {unit!r} is not a unit of {name}: {unit_advice(name)}"
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
@@ -329,7 +343,7 @@ def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]
     if "angular" in name and unit.lower().endswith("hz"):
         return (
             f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
-            f"heading, or give units={{{name!r}: 'rad/s'}}"
+            f"heading, or {unit_advice(name)}"
         )
     # tan delta must not be in an angle and a phase angle must be, since pint converts the one to
     # the other; None of other quantities
@@ -358,11 +372,11 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     values, half = table.numbers(column.position)
     # a phase angle of rubber in degrees goes above pi/2
     open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
-    if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
+    if not column.stated and (open_unit or (name == "temperature" and values.max() > KELVIN)):
         raise FileError(
             table.path,
-            f"column {column.heading!r} has no unit, and its largest value is {values.max():g}: "
-            f"give units={{{name!r}: UNIT}}, as {UNITS[name]!r}",
+            f"column {column.heading!r} has no unit, which its largest value {values.max():g} does "
+            f"not show: {unit_advice(name)}",
         )
     if column.log:
         values = column.log**values
@@ -376,7 +390,8 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     if name in _RANGES:
         low, high, words = _RANGES[name]
         table.require(
-            (values > low) & (values < high), f"the {name} is not {words}: remove the row"
+            (values > low) & (values < high),
+            f"the {name} must be {words}: correct or remove the row",
         )
     return (
         # the derivative of the tangent is 1/cos^2

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..core import FileError, Floats, warn_of_model
-from .dma_columns import UNITS, Column, numbers_of
+from .dma_columns import UNITS, Column, numbers_of, unit_advice
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, ModuliRecord
 from .table_reader import (
     ONE_FREQUENCY,
@@ -148,8 +148,7 @@ def read_relaxation(
             else "no column was found for time",
             others,
         )
-    if len(table.starts) > 1:
-        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them in the file")
+    table.refuse_several()
     used = [name for name in ("time", *pair, "temperature") if name in alike]
     others |= {
         each.heading: "not needed" for name in alike.keys() - {*used} for each in alike[name]
@@ -157,7 +156,7 @@ def read_relaxation(
     numbers = {name: agreeing_numbers(table, name, alike[name], others).values for name in used}
     for name in used[: 1 + len(pair)]:  # all but the temperature
         holds = (numbers[name] > 0.0) & (numbers[name] < np.inf)
-        table.require(holds, f"the {name} is not > 0 and finite: remove the row")
+        table.require(holds, f"the {name} must be > 0 and finite: correct or remove the row")
     # a strain is in use only beside a stress
     relaxation = numbers[pair[0]] / numbers.get("strain", 1.0)
     refuse_repeats(table, "time", numbers["time"], relaxation)
@@ -167,7 +166,8 @@ def read_relaxation(
     elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise FileError(
             table.path,
-            f"is at {temperature.min():g} to {temperature.max():g} °C: keep the rows of one value",
+            f"is at {temperature.min():g} to {temperature.max():g} °C, and must be at one "
+            "temperature: keep the rows of one",
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)
@@ -308,7 +308,7 @@ def read_dma(
     elif temperature is not None and reduced and np.ptp(temperature) > SAME_TEMPERATURE:
         temperature = None
         others[columns_of_quantity.pop("temperature")[0].heading] = (
-            "reduced frequencies belong to one temperature"
+            "reduced frequencies belong to one reference temperature"
         )
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
     moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
@@ -323,19 +323,19 @@ def read_dma(
             loss = loss / square
     # the decades of a modulus are below 10, and those of a low frequency negative
     logs = omega.min() < 0.0 or storage.max() < SOFTEST
-    advice = "are these logarithms? write log before their headings" if logs else "remove the row"
+    advice = "write log before the heading of a logarithm" if logs else "correct or remove the row"
     for name, values in {
         "frequency": omega,
         "storage modulus": storage,
         "loss modulus": loss,
     }.items():
         table.require(
-            (values > 0.0) & (values < np.inf), f"the {name} is not > 0 and finite: {advice}"
+            (values > 0.0) & (values < np.inf), f"the {name} must be > 0 and finite: {advice}"
         )
     warn_of_assumed_units(table, taken, storage)
     if sources != ["storage", "loss"]:
         notes.append(f"moduli are from {' and '.join(sources)}")
-    notes += [f"{name} agrees with them" for name in moduli if name not in pair]
+    notes += [f"{name} agrees with {' and '.join(pair)}" for name in moduli if name not in pair]
     strain = _strain(table, strains, others)
     taken += strains[:1] if strain is not None else []
     notes += source.notes(taken)
@@ -345,8 +345,10 @@ def read_dma(
         if n < table.starts[0] and _TEMPERATURE.search(text)
     ]
     if above and temperature is None:
-        stated = f"lines above the headings, {quoted(above)}"
-        notes.append(f"no temperature is read from {stated}: give temperature= to fit_prony")
+        notes.append(
+            f"no temperature is read from lines above the headings, {quoted(above)}: give "
+            "temperature= to fit_prony (in a shell: --temperature)"
+        )
     _warn_of_per_cent(table, taken)
     record = DynamicModuli(
         omega=omega,
@@ -390,8 +392,8 @@ def _warn_of_per_cent(table: Table, taken: list[Column]) -> None:
             most = numbers_of(table, column).values.max()
             if most > _MOST_DAMPED:
                 warn_of_model(
-                    f"{table.path}: tan delta of up to {most:g} is no rubber's: give "
-                    f"units={{'tan delta': '%'}} if it is in per cent, '1' if not"
+                    f"{table.path}: tan delta is up to {most:g}, above that of any rubber: "
+                    f"{unit_advice(column.name)}, or '1' in place of '%' if it is no per cent"
                 )
 
 
@@ -422,10 +424,13 @@ def _choose_columns(
     swept = "temperature" in quantities
     problem = (
         "no column was found for frequency"
-        + ": this is a sweep of temperature, not of frequency" * swept
+        + ", since this is a sweep of temperature: measure a sweep of frequency" * swept
     )
     if quantities & {"frequency", "reduced frequency"}:
-        problem = "fewer than two columns were found of storage, loss, tan delta and modulus"
+        problem = (
+            "fewer than two columns were found of storage, loss, tan delta and modulus (the "
+            "magnitude), all in tension or all in shear"
+        )
         # without compliances first, then without moduli
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
             columns: dict[str, list[Column]] = {}

@@ -21,10 +21,10 @@ from ..core import (
     Dataset,
     Figure,
     Floats,
-    ParameterError,
     Result,
     SummaryRow,
     check_array,
+    described_error,
     shape_error,
     warn_of_model,
 )
@@ -212,9 +212,13 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS)
     ]
     for name, column in zip(names, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:
-            raise shape_error(name, column.shape, f"one column, with the shape of {names[0]}")
+            raise shape_error(name, column.shape, "one column of numbers, as long as the others")
     if values[0].size < fewest:
-        raise ParameterError(names[0], f"{values[0].size} points", f"at least {fewest} points")
+        raise described_error(
+            names[0],
+            f"has {values[0].size} points in a curve",
+            f"at least {fewest} points in the curve of each temperature",
+        )
     order = np.argsort(values[0], kind="stable")
     return kind(*(column[order] for column in values))
 
@@ -548,13 +552,13 @@ class DynamicModuli(ModuliRecord):
         Warns with ModelWarning where the record has temperatures that span more than 1 K, or moduli
         of shear, which these arrays do not state.
         """
-        lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (
+        lost = ["the temperatures"] * (not self.isothermal) + ["that the moduli are of shear"] * (
             self.mode == "shear"
         )
         if lost:
             warn_of_model(
                 f"{self.source or 'record'}: omega, storage and loss alone do not state "
-                f"{' and '.join(lost)}: give fit_prony(record) the record itself"
+                f"{' and '.join(lost)}: call fit_prony(record) with the whole record"
             )
         return super().__iter__()
 

@@ -138,7 +138,9 @@ class SeriesFit(Result):
     def _fault(self) -> str:
         """Words on a misfit that misses the target or is above 5 %; "" where it does neither."""
         if not self.reached:
-            return f"the misfit of {self.target:.2%} was not reached ({self.largest_misfit:.2%})"
+            return (
+                f"the misfit of {self.largest_misfit:.2%} is above the target of {self.target:.2%}"
+            )
         above = self.largest_misfit > MISFIT_LIMIT
         return (
             f"the misfit of {self.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}" if above else ""
@@ -238,7 +240,7 @@ class SeriesFit(Result):
         """
         if self._fault:
             warn_of_model(
-                f"{self._fault}: see the points that miss in fit.plot(), and docs/howto/dma.md"
+                f"{self._fault}: see the large errors in fit.plot(), and the how-to on DMA data"
             )
         E = self.E
         measured = self.measured
@@ -361,9 +363,13 @@ class SeriesFit(Result):
             name: (x, values, {"units": "unit of the data"}) for name, values in of_data
         }
         data |= {
-            "E": ("mode", self.prony.E, {"long_name": "strengths divided by the long-time modulus"})
+            "E": (
+                "mode",
+                self.prony.E,
+                {"long_name": "strengths divided by the long-time modulus"},
+            ),
+            "tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"}),
         }
-        data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
         about = {
             "E_long": self.E,
             "T_ref": self.T_ref,

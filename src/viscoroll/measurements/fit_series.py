@@ -21,6 +21,7 @@ from ..core import (
     check_choice,
     check_integer,
     check_number,
+    describe_value,
     described_error,
 )
 from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Prony, VerticalShift, check_celsius
@@ -185,7 +186,7 @@ def fit_prony(
                 raise described_error(
                     name,
                     "is given",
-                    "left out: the result of read_dma contains it; write modes=5 for a "
+                    "left out, since the result of read_dma contains it; write modes=5 for a "
                     "number of modes",
                 )
         if mode not in (None, record.mode):
@@ -207,13 +208,17 @@ def fit_prony(
             "given beside omega; or give a record of read_dma alone",
         )
     check_choice("on", on, "both", "storage")
+    if not (vertical_shift in (None, "entropic") or callable(vertical_shift)):
+        raise ParameterError(
+            "vertical_shift", describe_value(vertical_shift), "'entropic' or a function"
+        )
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:
-        for name, value in (
-            ("reference", reference),
-            ("shift", shift),
-            ("vertical_shift", vertical_shift),
-        ):
+        for name, value in {
+            "reference": reference,
+            "shift": shift,
+            "vertical_shift": vertical_shift,
+        }.items():
             if value is not None:
                 raise described_error(
                     name, "is given, but temperature is not", "left out, or temperature given too"
@@ -317,7 +322,7 @@ def fit_relaxation(
             raise described_error(
                 "relaxation or mode",
                 "is given",
-                "left out: the result of read_relaxation contains both; write modes=5 for a "
+                "left out, since the result of read_relaxation contains both; write modes=5 for a "
                 "number of modes",
             )
         mode = _mode(t.mode)
@@ -379,12 +384,14 @@ def _fit_series(
     """
     target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
-    (low, high) = curve.band
+    low, high = curve.band
     data = thinned(curve)
     if high > MOST_SPREAD * low:
-        found = f"extends from {data[0][0]:g} to {data[0][-1]:g}"
-        allowed = f"within a factor of {MOST_SPREAD:g}: leave the outer points out"
-        raise described_error(data._fields[0], found, allowed)
+        raise described_error(
+            data._fields[0],
+            f"extends from {data[0][0]:g} to {data[0][-1]:g}",
+            f"within a factor of {MOST_SPREAD:g}; leave the outer points out",
+        )
     spectrum, grid, reached = fewest_modes(data, target, modes)
     T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0  # the longest comes first
     prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)
@@ -466,7 +473,7 @@ def fit_at_strain(
     The strain of the contact with the material of the fit is ``strain`` to 1e-3
     (``tests/test_heat.py``).
     """
-    sets = _sets_of([records] if isinstance(records, DynamicModuli) else records)
+    sets = _sets_of(records if isinstance(records, (list, tuple)) else [records])
     if len(sets) == 1:
         return fit_prony(sets[0], **options)
     strain = math.exp(np.mean([math.log(each.mean_strain) for each in sets]))
@@ -484,26 +491,28 @@ def fit_at_strain(
             return fit
     raise ConvergenceError(
         "fit_at_strain: the strain of the contact does not converge, its last two values are "
-        f"{last:.6g} and {strain:.6g}: fit the record of one strain by fit_prony"
+        f"{last:.6g} and {strain:.6g}; fit the record of one strain by fit_prony"
     )
 
 
-def _sets_of(records: Sequence[DynamicModuli]) -> list[Any]:
+def _sets_of(records: Sequence[Any]) -> list[Any]:
     """Divide records into records of one strain each, by rising strain.
 
     Two neighbouring strains of a record are of one set if they differ by less than a fifth.
 
     records : as in :func:`fit_at_strain`.
     Returns a list of :class:`DynamicModuli`; a record of one strain is in it as it is.
-    Raises ParameterError for a record without strain.
+    Raises ParameterError for what is no record, and for a record without strain.
     """
     found: list[Any] = []
-    for record in records:
+    for record in records or [None]:
+        if not isinstance(record, DynamicModuli):
+            raise ParameterError("records", describe_value(record), "what vr.read_dma returns")
         if record.mean_strain is None:
             raise described_error(
                 "records",
                 f"have one without strain ({record.source or 'without source'})",
-                "with the strain of each point: add its column to the file, or fit_prony it",
+                "records with a column of strain and its unit; for others call fit_prony(record)",
             )
         order = np.argsort(strains := np.asarray(record.strain), kind="stable")
         # cut behind each strain that the next one exceeds by more than the gap

@@ -22,11 +22,11 @@ from .measurement_records import ROLLING
 #: points of full slip in a motion below which the report says that mu rests on few
 _FEW = 5
 #: what residuals that are no noise may mean
-_INADEQUATE = "the model is inadequate, and the intervals are meaningless"
+_INADEQUATE = "the model does not describe the test, and the intervals mean nothing"
 #: correlation from which on the report names it
 _CLOSE = 0.9
 #: where a product by slopes holds
-_NEAR = "linearised, valid only while each unknown changes by less than a fifth"
+_NEAR = " (linearised: valid only while each unknown changes by less than a fifth)"
 #: fall of chi2 below the best fit from which on the report names a point of a profile
 _BETTER = 0.1
 
@@ -78,9 +78,14 @@ def _heading(fit: Any) -> str:
     ]:
         return f"{head}; standard deviation estimated: {', '.join(estimated)}"
     chance = (
-        "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
+        ""
+        if problem.robust or not fit.dof
+        else f" (probability of more: {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
     )
-    return f"{head}; chi2 {fit.chi2:.1f} of {fit.dof} degrees of freedom{chance}"
+    return (
+        f"{head}; chi2, the sum of (residual/sigma)^2, is {fit.chi2:.1f}, and about {fit.dof} for "
+        f"noise alone{chance}"
+    )
 
 
 def _noise(fit: Any) -> Iterator[str]:
@@ -108,8 +113,8 @@ def _noise(fit: Any) -> Iterator[str]:
         # allowed is 3/sqrt(points)
         points = 9.0 / allowed**2
         yield (
-            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most "
-            f"{allowed * 2.0 / 3.0:.2f} for noise; {size}): intervals are those of "
+            f"the residuals of {name} are autocorrelated: neighbours correlate by {lag:.2f}, those "
+            f"of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); intervals are those of "
             f"{points / noise.repeats:.0f} points in place of {points:.0f}, or {_INADEQUATE}"
         )
 
@@ -141,7 +146,7 @@ def _limits(fit: Any) -> Iterator[str]:
     yield from _interval_limits(fit)
     for chi2, values in fit.minima[1:]:
         yield (
-            f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} higher: "
+            f"other values fit nearly as well, with a chi2 {chi2 - fit.chi2:.1f} higher: "
             f"{_values_text(values)}"
         )
     yield from _phases(fit)
@@ -150,7 +155,10 @@ def _limits(fit: Any) -> Iterator[str]:
     # below the diagonal: each pair once
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
         if not {names[i], names[k]} <= loose:
-            yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"
+            yield (
+                f"errors of {names[k]} and {names[i]} compensate each other (correlation "
+                f"{fit.correlations[i, k]:+.4f})"
+            )
 
 
 def _products(fit: Any) -> str:
@@ -170,13 +178,15 @@ def _products(fit: Any) -> str:
         for by_slopes in (False, True)
     )
     if not found:
-        return "the data determine no product of their powers"
+        return "the data determine no product of them either"
     # of those that stand first in the sentence: near is False of the sure ones
     limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
     verb = "are" if " and " in (sure or near) else "is"
-    text = f"only {sure or near} {verb} {'bounded within the ranges' if limited else 'determined'}"
-    more = f"; near these values also {near}, more precisely" if sure else ", near these values"
-    return text + f"{more}: {_NEAR}" * bool(near)
+    text = f"only {sure or near} {verb} determined" + " within the ranges given" * limited
+    more = (
+        f"; near these values also {near}, more precisely" if sure else ", near these values only"
+    )
+    return text + f"{more}{_NEAR}" * bool(near)
 
 
 def _product_text(product: Any, values: dict[str, float]) -> str:
@@ -184,7 +194,7 @@ def _product_text(product: Any, values: dict[str, float]) -> str:
     largest absolute value first.
 
     The value is in SI units without their names, the ends of the interval are relative to it.  An
-    end that the range of an unknown limits is named, as "the lower end by the range of nu".
+    end that the range of an unknown limits is named, as "the lower end set by the range of nu".
     Exponents of equal absolute value stay in the order of the product; an exponent of 1 is not
     written.
 
@@ -201,7 +211,9 @@ def _product_text(product: Any, values: dict[str, float]) -> str:
     ends = (
         {"both ends": lower} if lower == upper else {"the lower end": lower, "the upper end": upper}
     )
-    limits = "".join(f", {end} by the range of {bounds}" for end, bounds in ends.items() if bounds)
+    limits = "".join(
+        f", {end} set by the range of {bounds}" for end, bounds in ends.items() if bounds
+    )
     return f"{text} = {product.value:.4g} (95%: {low} to {high}{limits})"
 
 
@@ -223,26 +235,26 @@ def _interval_limits(fit: Any) -> Iterator[str]:
         for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by, strict=True):
             if end is None:
                 yield (
-                    f"the interval of {name} has no {side} end: chi2 does not rise enough "
-                    "within the range"
+                    f"the interval of {name} has no {side} end: values up to that end of its range "
+                    "fit the data"
                 )
             for bound in bounds:
                 limited.setdefault(bound, []).append(f"the {side} end of {name}")
         if found.pieces:
             yield (
-                f"the interval of {name} contains several branches of the fit: values inside "
-                "may fit worse than ends"
+                f"the interval of {name} joins separate ranges that fit the data: values between "
+                "them may fit worse"
             )
         if found.best.chi2 < fit.chi2 - _BETTER:
             listed = _values_text(problem.values(found.best.u))
             yield (
-                f"a better fit was found, chi2 {found.best.chi2:.1f}, at {listed}: start there, "
-                "or use more starts"
+                f"a better fit was found, with chi2 {found.best.chi2:.1f} at {listed}: give a "
+                "cylinder with these values, or more starts="
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
-        yield f"the best fit has {problem.names[i]} at the end of its range"
+        yield f"the best fit has {problem.names[i]} at the end of its range: extend the range"
     yield from (
-        f"the range of {bound}, not the data, determines {', '.join(ends)}"
+        f"the range given for {bound}, not the data, determines {', '.join(ends)}"
         for bound, ends in limited.items()
     )
 
@@ -266,8 +278,10 @@ def _phases(fit: Any) -> Iterator[str]:
             )
         )
         if 0 < slips < _FEW:
-            found = f"{record_name} has only {slips} points in full slip, which determine mu"
-            yield f"{found}: record that phase more densely"
+            yield (
+                f"{record_name} has only {slips} points in full slip, which determine mu: record "
+                "that phase more densely"
+            )
 
 
 def as_dataset(fit: Any) -> Dataset:
@@ -409,12 +423,15 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
     yield symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}"
     if fit.mode == "shear":
-        factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
-        yield "shear", f"shear data: material(nu=) uses E = 2 (1 + nu) G, {factor}"
+        yield (
+            "shear",
+            f"shear data: material(nu=) uses E = 2 (1 + nu) G, {2.0 * (1.0 + _NU):.4g} G at nu = "
+            f"{_NU:g}",
+        )
     yield "alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)"
-    yield "T_ref", f"{fit.T_ref:.6g} s (the longest time)"
+    yield "T_ref", f"{fit.T_ref:.6g} s (the longest relaxation time)"
     if fit.temperature is not None:
-        yield "temperature", f"{fit.temperature:g} C, the temperature of these times"
+        yield "temperature", f"{fit.temperature:g} °C, the temperature of these times"
     if getattr(fit, "strain", None) is not None:
         yield "strain", f"{fit.strain:.3g}, the amplitude of the test"
     if fit.points > fit.data[0].size:
@@ -425,27 +442,32 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
     yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
     if fit.data._fields[0] == "t":
-        slope = f"{symbol}'' follows from the slope of {symbol}(t)"
-        yield "", f"{slope}; its error is ten times larger or more"
+        yield (
+            "",
+            f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or "
+            "more",
+        )
     else:
         yield from _of_dynamic(fit, symbol)
     yield "outside", _outside(fit)
     found = fit.admissible
-    ends = ", ".join(
-        f"+-{found.error[n]:.2%}"
-        for n in ((0, found.rate.size // 2, -1) if found.rate.size else ())  # rates ascend
-    )
-    where = "at the lowest, middle and highest speed inside the measured band"
-    yield "accuracy", f"M: {ends or 'no speed'}, {where}, by all spectra that meet the data as well"
-    if found.rate.size:
+    if count := found.rate.size:
+        errors = ", ".join(f"+-{error:.2%}" for error in found.error[[0, count // 2, -1]])
+        yield (
+            "accuracy",
+            f"of the rolling moment M: {errors} at the lowest, middle and highest speed that the "
+            "data cover, among all spectra that fit the data as well",
+        )
         (low, high), (least, most) = (
             (part.min(), part.max()) for part in (found.E / fit.E, found.alpha / prony.alpha)
         )
         yield (
             "",
-            f"among them {symbol} changes by factors of {low:.3g} to {high:.3g}, alpha of "
-            f"{least:.3g} to {most:.3g}",
+            f"among them {symbol} changes by factors of {low:.3g} to {high:.3g}, alpha by factors "
+            f"of {least:.3g} to {most:.3g}",
         )
+    else:
+        yield "accuracy", "not known, since the data cover no speed"
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
         yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"
@@ -474,9 +496,10 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
     if (shifts := fit.shifts) is None or len(shifts.temperature) < 2:
         return
     factors = ", ".join(
-        f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True)
+        f"{T:.4g} °C {np.log10(a):+.3f}"
+        for T, a in zip(shifts.temperature, shifts.a_T, strict=True)
     )
-    yield "shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"
+    yield "shifts", f"to {shifts.reference:g} °C, log10 a_T: {factors}"
     count = len(shifts.temperature)
     if shifts.distinct > count:
         yield (
@@ -503,11 +526,10 @@ def _kramers_kronig(median: float, symbol: str) -> str:
     if np.isnan(median):
         return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
     text = f"is {median:.2f} times the value from the slope of {symbol}' (Kramers-Kronig, median)"
-    sound = _CONSISTENT[0] <= median <= _CONSISTENT[1]
-    return text + (
-        ""
-        if sound
-        else ": storage and loss modulus are inconsistent, or the spectrum has few narrow modes"
+    return (
+        text
+        + ": storage and loss modulus are inconsistent, or relaxation times are far apart"
+        * (not _CONSISTENT[0] <= median <= _CONSISTENT[1])
     )
 
 
@@ -523,5 +545,7 @@ def _outside(fit: Any) -> str:
     if not (count := int(fit.outside.sum())):
         return f"no mode lies outside {range_of}"
     share = float(fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0))
-    which = f"{count} of {fit.prony.E.size} modes, {share:.1%} of the sum of strengths"
-    return f"{which}, lie outside {range_of}"
+    return (
+        f"{count} of {fit.prony.E.size} modes, {share:.1%} of the sum of strengths, lie outside "
+        f"{range_of}"
+    )

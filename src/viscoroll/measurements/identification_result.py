@@ -329,7 +329,7 @@ class Identification(Result):
         """
         if not isinstance(record, Record):
             raise ParameterError(
-                "record", describe_value(record), "a Resistance, Traction or Coastdown"
+                "record", describe_value(record), "a vr.Resistance, vr.Traction or vr.Coastdown"
             )
         for name, (_, span) in record.initial_values(self.cylinder.R).items():
             if span is not None:

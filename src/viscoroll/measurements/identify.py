@@ -143,7 +143,7 @@ def identify(
     prior = {} if prior is None else prior
     for name, value, kind, allowed in (
         ("cylinder", cylinder, Cylinder, "a Cylinder"),
-        ("unknown", unknown, Mapping, "{name: (low, high)}"),
+        ("unknown", unknown, Mapping, "a dict, as {'mu': (0.1, 1.0)} with a range for each name"),
         ("data", data, Iterable, "a list of records: vr.Resistance, vr.Traction or vr.Coastdown"),
         (
             "shift",
@@ -152,7 +152,7 @@ def identify(
             "a vr.WLF, a vr.Arrhenius or a function of the temperature in degrees Celsius, or "
             "{'material': ..., 'base': ...} with one for each body",
         ),
-        ("prior", prior, Mapping, "{name: (value, standard deviation)}"),
+        ("prior", prior, Mapping, "a dict {name: (value, standard deviation)}"),
     ):
         if not isinstance(value, kind):
             raise ParameterError(name, describe_value(value), allowed)
@@ -172,11 +172,12 @@ def identify(
     # a standard deviation that is estimated needs one degree of freedom
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
-        allowed = (
-            f"at most {most}, since the number of points is {problem.points}: give more "
-            "points, or sigma"
+        raise ParameterError(
+            "number of unknowns",
+            len(unknowns),
+            f"at most {most}, since the number of points is {problem.points}: give more points, "
+            "fewer unknowns, or sigma, whose estimate takes one point",
         )
-        raise ParameterError("number of unknowns", len(unknowns), allowed)
     return Identification(
         problem,
         _find_minima(
@@ -197,8 +198,8 @@ def _refuse_tables(cylinder: Cylinder, unknowns: list[Unknown]) -> None:
     if changing and cylinder.scene().tabulated:
         raise described_error(
             "coupled",
-            f"needs a table of the coupled solution for each trial value of {changing[0]}",
-            "False in the Cylinder, for the fast law, whose error validity() states",
+            f"= True needs a table of the coupled solution for each trial value of {changing[0]}",
+            "False in the Cylinder, for the fast law, whose error cylinder.validity(V) states",
         )
 
 
@@ -224,7 +225,7 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
             raise ParameterError("name", repr(name), "different for each record: give name=")
         if not record.sigma:
             raise described_error(
-                f"{name}: sigma", "is not given", "given for a record without values"
+                f"{name}: sigma", "is not given", "given for a plan, a record without values"
             )
         found[name] = record
     if not found:
@@ -233,7 +234,7 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
         raise described_error(
             "data",
             "has records with values and records without",
-            "one kind: fit the records with values first, then plan with the fitted cylinder",
+            "one kind: fit the records with values first, then plan others with its fit.cylinder",
         )
     return found
 
@@ -401,8 +402,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     ------
     FileError
         A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with
-        its line; a [scene] in place of a [cylinder]; no [unknown] or no [[data]].  A file of data
-        that cannot be read, or without a column.
+        its line; a [scene]; no [unknown] or [[data]]; data that cannot be read, or lack a column.
 
     Warns
     -----
@@ -479,7 +479,7 @@ def _record(path: Path, content: Any, number: int) -> Record:
     try:
         return kind(**more, **_columns(path.parent / section.file, kind, section))
     except ParameterError as error:
-        raise FileError(path, f"[[data]] {section.file}: {error}") from error
+        raise FileError(path, f"in [[data]] of {section.file}, {error}") from error
 
 
 def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
@@ -497,8 +497,8 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     ------
     FileError
         A file that cannot be read; a coordinate, or a column that the section names or gives a unit
-        of, that is missing; other columns
-        where none is a quantity, since one of them may be; a cell that is no number.
+        of, that is missing; other columns where none is a quantity, since one of them may be; a
+        cell that is no number.
     ParameterError
         A column whose unit has another dimension.
 
@@ -519,7 +519,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
             raise missing_column(
                 table,
                 headings[name],
-                f"; name that of {name} in [[data]] by columns = {{ {name} = '...' }}",
+                f"; state the heading of {name} in [[data]], as columns = {{ {name} = 'HEADING' }}",
             )
     others = [
         repr(heading)
@@ -528,12 +528,12 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     ]
     if others and not present.keys() & set(kind.QUANTITIES):
         name = kind.QUANTITIES[0]
-        problem = f"has no column {' or '.join(kind.QUANTITIES)}, only {', '.join(others)}"
-        advice = (
-            f"if one of these is {name}, name it in [[data]] by columns = {{ {name} = '...' }}; to "
-            "plan a test, remove these columns from the file"
+        raise FileError(
+            path,
+            f"has no column {' or '.join(kind.QUANTITIES)}, only {', '.join(others)}: if one of "
+            f"these is {name}, write columns = {{ {name} = 'HEADING' }} in [[data]]; if nothing "
+            "was measured (a plan), remove these columns",
         )
-        raise FileError(path, f"{problem}: {advice}")
     if others:
         warn_of_model(f"{path.name}: unused columns: {', '.join(others)}")
     found = {}
@@ -548,7 +548,8 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
             raise described_error(
                 name,
                 f"is in {error.value}",
-                f"in a unit of the dimension of {unit}{per}: give units = {{ {name} = ... }}",
+                f"in a unit of the dimension of {unit}{per}; if its heading is wrong, write in "
+                f"[[data]] units = {{ {name} = 'UNIT' }}",
             ) from error
     return found
 
@@ -571,8 +572,8 @@ def _said(table: Table, names: set[str]) -> dict[str, str]:
                 found.setdefault(name, []).append(heading)
     for name, (first, *others) in found.items():
         if others:
-            advice = f"name one in [[data]] by columns = {{ {name} = {first!r} }}"
-            raise FileError(table.path, f"{first!r} and {others[0]!r} both say {name}: {advice}")
+            advice = f"write one in [[data]], as columns = {{ {name} = {first!r} }}"
+            raise FileError(table.path, f"{first!r} and {others[0]!r} may both be {name}: {advice}")
     return {name: first for name, (first, *_) in found.items()}
 
 
@@ -595,6 +596,5 @@ def _refuse_unclear_turns(table: Table, index: int, unit: str) -> None:
                 doubtful = f"the unit {each}"
     if doubtful:
         problem = f"column {heading!r} has {doubtful}, and may be of turns or of radians"
-        raise FileError(
-            table.path, f'{problem}: give units = {{ omega = "rpm" }} or "rad/s" in [[data]]'
-        )
+        advice = 'write in [[data]] units = { omega = "UNIT" } with rpm, rev/s or rad/s'
+        raise FileError(table.path, f"{problem}: {advice}")

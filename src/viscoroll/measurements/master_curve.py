@@ -87,32 +87,37 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
             of_curves = zip_longest(map(np.size, column), sizes, fillvalue=0)
             for n, (own, wanted) in enumerate(of_curves, 1):
                 if own != wanted:
-                    problem = f"has {own} points in curve {n}"
-                    raise described_error(name, problem, f"as many as omega, {wanted}")
+                    raise described_error(
+                        name, f"has {own} points in curve {n}", f"as many as omega has, {wanted}"
+                    )
         if given.shape != (len(sizes),):
-            allowed = f"one for each of the {len(sizes)} curves"
-            raise shape_error("temperature", given.shape, allowed)
+            raise shape_error(
+                "temperature", given.shape, f"one number for each of the {len(sizes)} curves"
+            )
         if 0 in sizes:
-            problem = f"has no points for curve {sizes.index(0) + 1}"
-            raise described_error("omega", problem, "one frequency or more for each curve")
+            raise described_error(
+                "omega",
+                f"has no points for curve {sizes.index(0) + 1}",
+                "one or more in each curve",
+            )
         first = np.cumsum([0, *sizes[:-1]])
         return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
     flat = [np.asarray(column) for column in columns]
     if given.ndim == 0:
         given = np.full(flat[0].shape, float(given))
     if given.ndim != 1:
-        raise shape_error("temperature", given.shape, "one for each point, or one for each curve")
+        raise shape_error("temperature", given.shape, "one number for each point or each curve")
     for name, column in zip(Curve._fields, flat, strict=True):
         if column.shape != given.shape:
-            raise shape_error(name, column.shape, f"one for each point, of shape {given.shape}")
+            raise shape_error(name, column.shape, f"one number for each point, {given.shape}")
     return given, flat, None
 
 
 def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     """Divide points into sets of one temperature.
 
-    In ascending order, a temperature that is at most :data:`LEAST_DISTANCE`, 0.5 K, above the one
-    before is of the same set.
+    In ascending order, a temperature at most :data:`LEAST_DISTANCE`, 0.5 K, above the one before is
+    of the same set.
 
     temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
     first : index of the first point of each curve, each < n, (curves,), as in :func:`points_of`;
@@ -131,15 +136,13 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     parts = np.split(ascending, np.flatnonzero(np.diff(label)) + 1)
     for part in parts:
         if part[-1] - part[0] > SAME_TEMPERATURE:
-            found = (
+            raise described_error(
+                "temperature",
                 f"rises from {part[0]:g} to {part[-1]:g} °C in steps of at most "
-                f"{LEAST_DISTANCE:g} K"
+                f"{LEAST_DISTANCE:g} K",
+                f"equal within {SAME_TEMPERATURE:g} K in each sweep, with larger steps between "
+                "sweeps; give each point the nominal temperature of its sweep",
             )
-            allowed = (
-                f"equal within {SAME_TEMPERATURE:g} K in each sweep, and differ by more "
-                "between sweeps"
-            )
-            raise described_error("temperature", found, f"{allowed}: round it to that of the sweep")
     if first is None:  # in the order in which the sets come
         first = np.sort(np.unique(of_point, return_index=True)[1])
     return Sets(np.array([float(np.median(part)) for part in parts]), of_point, of_point[first])
@@ -151,9 +154,8 @@ def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
     temperatures : temperatures of the sets, at least one, ascending, degrees Celsius, (sets,).
     unshifted : temperatures at which the given shift is 1, degrees Celsius; empty, or NaN, where
         none is known.
-    Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the
-    highest set, both included, else the temperature of the middle set, of an even number the warmer
-    one of the two.
+    Returns degrees Celsius: the first of ``unshifted`` from the lowest to the highest set, else the
+    temperature of the middle set, of an even number the warmer one of the two.
     """
     low = temperatures[0]
     high = temperatures[-1]
@@ -167,37 +169,36 @@ def nearest(base: float, temperatures: Floats) -> int:
 
     base : the temperature for which the set is sought, degrees Celsius, a number.
     temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
-    Returns an index of ``temperatures``, an int; of two that are equally near that of the colder
-    set.
+    Returns an index of ``temperatures``, an int; of two equally near ones that of the colder set.
     Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE`, 0.5 K, below the first
     set or above the last.
     """
     low = temperatures[0]
     high = temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
-        raise ParameterError("reference", base, f"within [{low}, {high}]")
+        raise ParameterError(
+            "reference", base, f"within the temperatures of the curves, {low} to {high} °C"
+        )
     return int(np.argmin(np.abs(temperatures - base)))
 
 
 def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, float]:
-    """Sort listed shift factors by sets and divide them by that of the reference, which is found if
-    it is not given.
+    """Sort listed shift factors by sets, and divide them by that of the reference.
 
     shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves.
     sets : :class:`Sets`, the sets of the points.
     base : reference, degrees Celsius; None: the temperature of the coldest set whose factor is 1 to
         1e-9, else that of the middle set, of an even number the warmer one.
-    Returns (factors of the sets, dimensionless, (sets,), divided by that of the reference;
-    reference, degrees Celsius).
+    Returns (factors of the sets relative to the reference, (sets,); reference, degrees Celsius).
     Raises ParameterError for factors that are not finite and > 0, of another number than the
-    curves, or different for curves of one set, and for a reference that is within 0.5 K of none of
-    the sets.
+    curves, or different for curves of one set, and for a reference more than 0.5 K from all sets.
     """
     factors = check_array("shift", shift)
     temperatures = sets.temperature
     if not (factors > 0.0).all():
-        allowed = "> 0: factors a_T, not their logarithms"
-        raise ParameterError("shift", f"{factors.min():g}", allowed)
+        raise ParameterError(
+            "shift", f"{factors.min():g}", "> 0: give the factors a_T, not their logarithms"
+        )
     if factors.shape != sets.of_curve.shape:
         allowed = (
             f"one factor for each of {sets.of_curve.size} temperatures, in the order of the curves"
@@ -207,18 +208,19 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     # of several curves of a set the last factor stays, with which all are compared
     found[sets.of_curve] = factors
     if (found[sets.of_curve] != factors).any():
-        problem = "has several factors for one temperature"
-        raise described_error("shift", problem, "one factor for each temperature")
+        raise described_error(
+            "shift", "has several factors for one temperature (to 0.5 K)", "one for each"
+        )
     if base is None:
         base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
     index = nearest(base, temperatures)
     if abs(temperatures[index] - base) > LEAST_DISTANCE:
-        listed = ", ".join(map(str, temperatures))
-        allowed = (
-            f"{listed}, whose factors shift lists; for another one give shift as a function "
-            "of the temperature"
+        raise ParameterError(
+            "reference",
+            base,
+            f"one of {', '.join(map(str, temperatures))} °C, whose factors shift lists; for others "
+            "give shift as a function of the temperature, as vr.WLF(T0=20.0)",
         )
-        raise ParameterError("reference", base, allowed)
     return found / found[index], base
 
 
@@ -249,8 +251,8 @@ class Shifts(ShiftFactors):
     """Shift factors that lay the curves of several temperatures on one; as a function a_T at any
     temperature between.
 
-    temperature : temperature of each curve, ascending, degrees Celsius, (curves,); the median of
-    those of its points.
+    temperature : median temperature of the points of each curve, ascending, degrees Celsius,
+        (curves,).
     a_T : times at this temperature over those at the reference: factor of frequencies, (curves,).
     T0, reference : temperature of the master curve, degrees Celsius, at which a_T is 1; it need not
         be one of ``temperature``.
@@ -296,8 +298,7 @@ def master_curve(
         temperature in degrees Celsius that returns a_T; or None: found by the overlap of
         neighbouring curves, and interpolated to the reference (:class:`viscoroll.ShiftFactors`).
         All are divided by that of the reference.
-    on : "both" or "storage": the moduli by whose overlap shifts are found; not used where shifts
-        are given.
+    on : "both" or "storage": the moduli by whose overlap shifts are found, if none are given.
     vertical_shift : b_T by which moduli are divided, relative to the reference, as in
         :class:`viscoroll.Material`.
 
@@ -318,15 +319,13 @@ def master_curve(
         shifts, or with listed factors at none of them; a curve of a single frequency, where the
         overlap gives the shifts; neighbouring curves that do not overlap, or whose best shift is
         the last that leaves an overlap; shift factors of another number than the curves, not > 0,
-        or larger at the highest temperature than at the lowest, also those that the overlap
-        determines.
+        or larger at the highest temperature than at the lowest, also those of the overlap.
 
     Warns
     -----
     ModelWarning
         Curves so flat that their overlap leaves more than a decade for the shift; E' and E'' that
-        overlap best at different shifts; a factor that rises with temperature; temperatures that
-        look like kelvin.
+        overlap best at different shifts; a factor that rises with temperature; kelvins.
     """
     point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
     whole = [
@@ -345,7 +344,7 @@ def master_curve(
         b_T = [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
         whole[1:] = [each / np.array(b_T)[sets.of_point] for each in whole[1:]]
     mismatch = freedom = np.full(temperatures.size - 1, math.nan)
-    if callable(shift):
+    if callable(shift) and not isinstance(shift, type):
         if base is None:
             base = default_reference(temperatures, [getattr(shift, "T0", math.nan)])
         factor = np.array([relative_shift(shift, T, base) for T in temperatures.tolist()])
@@ -377,27 +376,29 @@ def master_curve(
     )
     open_shifts = undetermined_shifts(shifts)
     rises = [
-        f"from {cold:g} to {warm:g} C (by a factor of {ratio:.3g})"
+        f"from {cold:g} to {warm:g} °C (by a factor of {ratio:.3g})"
         for cold, warm, ratio in zip(temperatures, temperatures[1:], factor[1:] / factor[:-1])
         if ratio > 1.0
     ]
     if factor[-1] > factor[0] and not open_shifts:
         raise ParameterError(
-            "shift" if shift is not None else "shift by the overlap",
-            f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at "
-            f"{temperatures[-1]:g} C",
+            "shift" if shift is not None else "shift found by the overlap",
+            f"{factor[0]:.3g} at {temperatures[0]:g} °C and {factor[-1]:.3g} at "
+            f"{temperatures[-1]:g} °C",
             "shift factors a_T (time divided by time at the reference), which decrease with "
-            f"temperature, in the order of the curves; a_T rises {', '.join(rises)}",
+            f"temperature, in the order of the curves; check those that rise {', '.join(rises)}",
         )
     if rises:
-        text = f"a_T rises with temperature {'; '.join(rises)}: check these curves, or give shift="
-        warn_of_model(text)
-    if open_shifts:
-        text = (
-            f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the "
-            "curves are flat: give shift="
+        warn_of_model(
+            f"a_T rises with temperature {'; '.join(rises)}, but should fall: check these curves"
         )
-        warn_of_model(text + (', or try on="storage"' if on == "both" else ""))
+    if open_shifts:
+        warn_of_model(
+            f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the "
+            "curves are flat: give known factors by shift="
+            + ', or try on="storage"'
+            * (on == "both")
+        )
     moduli = [each * vertical_factor(vertical_shift, base, coldest) for each in whole[1:]]
     return data_of(Curve, whole[0] * factor[sets.of_point], *moduli), shifts
 
@@ -407,13 +408,12 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 
     shifts : :class:`Shifts` of the curves, of which temperature and freedom are read.
     Returns a text for each pair whose ``freedom``, the decades over which its shift may be moved,
-    is above :data:`LARGEST_FREEDOM`, one decade (1 itself and NaN are not), with both temperatures
-    and these decades, coldest first; an empty list where there is none, as for factors that were
-    given.
+    is above :data:`LARGEST_FREEDOM`, one decade, with both temperatures and these decades, coldest
+    first; [] where there is none, as for factors that were given.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
     return [
-        f"from {cold:g} to {warm:g} C (within {free:.1f} decades)"
+        f"from {cold:g} to {warm:g} °C (free within {free:.1f} decades)"
         for (cold, warm), free in pairs
         if free > LARGEST_FREEDOM
     ]
@@ -426,10 +426,9 @@ def _shifts_by_overlap(
 
     curves : list of :class:`_LogCurve`, one for each temperature, at least one, the coldest first.
     temperatures : temperatures of the curves, degrees Celsius, ascending, (curves,), for messages.
-    Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; root mean
-    square difference of the logarithms of the moduli of each pair of neighbours, (curves - 1,);
-    decades by which the shift of each pair may vary, (curves - 1,)); of a single curve the last two
-    are empty.
+    Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; rms difference
+    of the logarithms of the moduli of each pair of neighbours, (curves - 1,); decades by which the
+    shift of each pair may vary, (curves - 1,)); of a single curve the last two are empty.
     Raises ParameterError for neighbours that do not overlap, differ by more than 0.3 in ln E' and
     ln E'', or agree best at the end of the search where the curves are not flat.  Warns with
     ModelWarning of neighbours whose moduli disagree on the shift.
@@ -438,25 +437,27 @@ def _shifts_by_overlap(
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
         name = "moduli at {:g} and {:g} °C".format(*pair)
         if not alignment.mismatch <= _LARGEST_MISMATCH:
-            allowed = "curves that overlap: leave one out, or give shift="
-            raise described_error(name, "do not agree after any shift", allowed)
-        if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
-            problem = (
-                f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve"
+            raise described_error(
+                name,
+                "do not agree after any shift",
+                "curves that overlap; leave one out, or give known factors by shift=",
             )
-            allowed = "curves that overlap more: measure between these temperatures, or give shift="
-            raise described_error(name, problem, allowed)
+        if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
+            raise described_error(
+                name,
+                f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve",
+                "curves that overlap more; measure between these temperatures, or give shift=",
+            )
     torn = [
-        f"from {cold:g} to {warm:g} C"
+        f"from {cold:g} to {warm:g} °C"
         for alignment, (cold, warm) in zip(found, pairwise(temperatures), strict=True)
         if alignment.disagree
     ]
     if torn:
-        text = (
-            f"E' and E'' overlap best at different shifts {', '.join(torn)}; the one that "
-            "overlaps better decides"
+        warn_of_model(
+            f"E' and E'' overlap best at different shifts {', '.join(torn)}; the modulus that "
+            'overlaps better decides: compare with a fit with on="storage"'
         )
-        warn_of_model(text + ': compare with on="storage"')
     # reshaped, since found is empty of a single curve
     steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
     return np.append(0.0, np.cumsum(steps)), mismatch, freedom
@@ -474,8 +475,7 @@ class _LogCurve:
     def __init__(self, curve: Curve, on: str) -> None:
         """Take logarithms, average those of repeated frequencies, and make the interpolant.
 
-        It is a cubic spline, of two or three different frequencies a monotone piecewise cubic
-        (PCHIP).
+        It is a cubic spline, of two or three different frequencies a monotone one (PCHIP).
 
         curve : :class:`Curve`, storage and loss modulus.
         on : "storage" or "both": the moduli that are kept.
@@ -491,8 +491,8 @@ class _LogCurve:
             [np.bincount(which, np.log(column)) / count for column in columns], axis=1
         )
         if self.x.size < 2:
-            found = f"has {self.x.size} value at a temperature"
-            raise described_error("omega", found, "two frequencies or more at each")
+            found = "has a single value at one temperature"
+            raise described_error("omega", found, "two frequencies or more at each temperature")
         self.interpolate = (
             CubicSpline(self.x, self.y) if self.x.size > 3 else PchipInterpolator(self.x, self.y)
         )

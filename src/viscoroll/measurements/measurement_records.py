@@ -190,7 +190,7 @@ class Record:
                 allowed = f"one for each quantity, as {{{': ..., '.join(map(repr, among))}: ...}}"
                 raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
-        check_names(self.label("sigma"), given, among, "a quantity of it")
+        check_names(self.label("sigma"), given, among, "a quantity of the record")
         return {name: value for name, value in given.items() if value is not None}
 
     @property
@@ -296,15 +296,14 @@ class Resistance(Record):
             noise = 0.0 if self.sigma[name] is None else 3.0 * self.sigma[name]
             if (getattr(self, name) * np.sign(self.V) < -noise).all():
                 problem = "has at all points the sign opposite to V"
-                allowed = "of the sign of V, as it resists: reverse its sign"
+                allowed = "of the sign of V, since it resists; reverse its sign in the data"
                 raise described_error(self.label(name), problem, allowed)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Predict rolling moment and pulling force of free rolling, the torque of the bearing
-        included.
+        """Predict rolling moment and pulling force, the torque of the bearing included.
 
-        The moment is M of the contact at delta = 0, plus sign(V) brake + drag V/R, and the force is
-        this moment over R; both are 0 at V = 0.
+        The force is that of :func:`viscoroll.steady` with the bearing's torque, sign(V) brake +
+        drag V/R; the moment is force times R.  Both are NaN where friction does not turn it.
 
         Parameters
         ----------
@@ -327,7 +326,7 @@ class Resistance(Record):
         Warns
         -----
         ModelWarning
-            As :func:`viscoroll.contact`; a fit suppresses it.
+            As :func:`viscoroll.steady`; a fit suppresses it.
 
         Examples
         --------
@@ -343,9 +342,10 @@ class Resistance(Record):
         V = np.asarray(self.V)
         brake = values.get("brake", 0.0)
         drag = values.get("drag", 0.0)
-        M = cylinder.contact(V, delta=0.0, fields="M").M
-        M = M + np.sign(V) * brake + drag * V / cylinder.R
-        return {"M": M, "F": M / cylinder.R}
+        force = cylinder.steady(V=V, torque=-np.sign(V) * brake - drag * V / cylinder.R).force
+        # one equilibrium a speed; none where the bearing takes more torque than friction
+        F = force.reshape(V.shape) if force.size else np.full(V.shape, np.nan)
+        return {"M": F * cylinder.R, "F": F}
 
 
 @dataclass(frozen=True, eq=False)
@@ -473,14 +473,14 @@ class Coastdown(Record):
         super().__post_init__()
         t: Any = self.t
         if t.ndim > 1:
-            raise shape_error(self.label("t"), t.shape, "a vector, in ascending order")
+            raise shape_error(self.label("t"), t.shape, "one list of times in ascending order")
         if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
             n = falls[0]
             found = f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}"
-            raise ParameterError(self.label("t"), found, "a vector, in ascending order")
+            raise ParameterError(self.label("t"), found, "in ascending order")
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
-            raise ParameterError(self.label("t0"), self.t0, "a number, or (low, high)")
+            raise ParameterError(self.label("t0"), self.t0, "a number, or a range (low, high)")
         vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)
 
     def initial_values(self, R: float) -> InitialValues:
@@ -543,7 +543,7 @@ class Coastdown(Record):
             # [:1]: the slope, before the constant
             data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
         if data is None:
-            raise ParameterError(self.label(name), None, "a number: the data do not determine it")
+            raise ParameterError(self.label(name), None, "a number, since no data determine it")
         first = float(data[0])
         most = float(np.max(np.abs(data)))
         return first, (first - most, first + most)

@@ -306,7 +306,7 @@ def fewest_modes(
         raise described_error(
             name,
             f"has no plateau at {side} ({data[1][n]:g} at {x} = {data[0][n]:g})",
-            "that of a solid, whose long-time modulus is positive",
+            "that of a solid, which tends to a constant > 0; add or correct points there",
         )
     limit = _NEAR_BEST * min(_size(data, spectrum) for spectrum, _ in starts)
     reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)
@@ -499,8 +499,8 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     Returns the :class:`AdmissibleSpectra`.
     Raises RuntimeError as :func:`on_times` does.
     """
-    (low, high) = data.band
-    (slow, fast) = Measured(*data.band, 0.0).transit_band
+    low, high = data.band
+    slow, fast = Measured(*data.band, 0.0).transit_band
     n = 2 + int(_SPEEDS * math.log10(fast / slow)) if fit.tau.size and slow < fast else 0
     rate = np.geomspace(slow, fast, n)
     T_ref = float(np.max(fit.tau)) if fit.tau.size else 1.0

@@ -23,7 +23,18 @@ from ..core import (
     described_error,
     warn_of_model,
 )
-from .dma_columns import BARE, OF_SHEAR, QUANTITIES, UNITS, Column, columns_of, meanings, numbers_of
+from .dma_columns import (
+    BARE,
+    KELVIN,
+    OF_SHEAR,
+    QUANTITIES,
+    UNITS,
+    Column,
+    columns_of,
+    meanings,
+    numbers_of,
+    unit_advice,
+)
 from .dynamic_moduli import SAME_TEMPERATURE
 from .text_cells import NO_UNIT, Numbers, conversion, readings
 from .text_table import Table, read_table
@@ -89,12 +100,13 @@ def storage_and_loss(
         rounding = rounding * (exact["modulus"] / other) ** 2
         table.require(
             rounding <= _ROUNDED,
-            f"{both} differ too little to give the other modulus: add a column of tan delta",
+            f"{both} (the magnitude) differ too little, for their number of digits, to give the "
+            "other modulus: add a column of tan delta",
         )
     for name in columns.keys() - set(pair):
         values, half = columns[name]
         agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half
-        advice = f"give units={{{name!r}: UNIT}}, or remove one of these columns"
+        advice = f"{unit_advice(name)}, or remove one of these columns"
         table.require(agrees, f"{name} contradicts {both}: {advice}")
     return storage, loss
 
@@ -111,10 +123,11 @@ ONE_FREQUENCY = 1e-3
 #: ratio of moduli at one frequency and one temperature above which something else was varied
 _REPEATED = 1.25
 #: test -> advice where columns are not understood; the program reads no relaxation tests
-_NAME_THEM = {"relaxation": "name the columns by columns={QUANTITY: HEADING, ...}"}
-_NAME_THEM["dma"] = (
-    f"{_NAME_THEM['relaxation']} (`viscoroll material fit`: --column QUANTITY=HEADING)"
-)
+_NAME_THEM = {
+    "relaxation": "name the columns by columns={'time': HEADING, 'relaxation modulus': HEADING}",
+    "dma": "name the columns by columns={'frequency': HEADING, 'storage': HEADING, 'loss': HEADING}"
+    " (in a shell: --column storage=HEADING for each)",
+}
 #: a number in degrees Celsius, or of three digits in kelvin, which is no rate, and none that a
 #: comma in a row of cells may have cut; before it what makes it the end of a range, as "20 to "
 _IN_DEGREES = re.compile(
@@ -135,8 +148,6 @@ _LIKE_TEMPERATURE = re.compile(
 _SCATTER = 0.1
 #: base of logarithms -> their name
 _LOGARITHMS = {math.e: "ln", 2.0: "log2", 10.0: "log10"}
-#: degrees; numbers without a unit above it may be kelvins
-_KELVIN = 200.0
 
 
 class Understood(NamedTuple):
@@ -160,7 +171,7 @@ class Understood(NamedTuple):
         """
         beside = next((heading for heading in self.table.headings if OF_SHEAR.search(heading)), "")
         mode = said or ("shear" if beside else "tension")
-        reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
+        reason = f"the file has {beside!r}" if beside else "no heading says E or G"
         return mode, [f"{mode} is assumed, since {reason}"] * (not said)
 
     def notes(self, taken: list[Column]) -> list[str]:
@@ -170,12 +181,14 @@ class Understood(NamedTuple):
         taken : the columns that are read.
         """
         notes = [
-            f"{column.heading!r} is {_LOGARITHMS[column.log]}" for column in taken if column.log
+            f"{column.heading!r} is read as {_LOGARITHMS[column.log]}"
+            for column in taken
+            if column.log
         ]
         listed = ", ".join(
             f"{heading!r}" + f" ({why})" * bool(why) for heading, why in self.others.items()
         )
-        notes += [f"unused: {listed}"] * bool(listed)
+        notes += [f"unused columns: {listed}"] * bool(listed)
         below = [text for n, text in self.table.titles.items() if n > self.table.rows[-1].number]
         return notes + [f"lines below the rows are left out, as {quoted(below[:1])}"] * bool(below)
 
@@ -188,10 +201,12 @@ def missing(table: Table, test: str, problem: str, others: Mapping[str, str]) ->
     problem : words on what is missing.
     others : heading -> why the column is left out.
     """
-    reasons = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
+    reasons = "".join(
+        f"; {heading!r} is unused, since {why}" for heading, why in others.items() if why
+    )
     headings = ", ".join(repr(heading or f"column {n}") for n, heading in enumerate(table.headings))
     advice = f"; {_NAME_THEM[test]}" * ("" in others.values() or not others)
-    return FileError(table.path, f"{problem}{reasons}; headings: {headings}{advice}")
+    return FileError(table.path, f"{problem}; the headings are {headings}{reasons}{advice}")
 
 
 def quoted(lines: list[str]) -> str:
@@ -233,15 +248,15 @@ def understand(
     )
     if table.without_headings and not named:
         if len(table.headings) != len(bare):
-            called = ", ".join(map(repr, table.headings))
-            problem = (
+            raise FileError(
+                path,
                 f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
-                f"({', '.join(bare)})"
+                f"({', '.join(bare)}); these are called {', '.join(map(repr, table.headings))}: "
+                f"{_NAME_THEM[test]}",
             )
-            raise FileError(path, f"{problem}; they are called {called}: {_NAME_THEM[test]}")
         named = dict(zip(bare, table.headings, strict=True))
     found, others = columns_of(table, test, named=named, overruling=overruling, defaults=defaults)
-    check_names("units", overruling, [column.name for column in found], "a quantity of this file")
+    check_names("units", overruling, [column.name for column in found], "a quantity of the file")
     return Understood(table, found, others)
 
 
@@ -263,7 +278,7 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     known = QUANTITIES[test]
     first = BARE[test][0]
     allowed = (
-        f"({first.split()[-1]}, moduli), as ({UNITS[first]!r}, 'MPa'), or a dict, as "
+        f"(unit of {first.split()[-1]}, of moduli), as ({UNITS[first]!r}, 'MPa'), or a dict, as "
         f"{{{first!r}: {UNITS[first]!r}}}"
     )
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
@@ -325,15 +340,12 @@ def agreeing_numbers(
     first = numbers_of(table, alike[0])
     for column in alike[1:]:
         second = numbers_of(table, column)
-        relative = (
-            0.0
-            if quantity == "temperature"
-            else _ROUND_PI
-            if quantity.endswith("frequency")
-            else AVERAGED
-        )
         # of temperatures an absolute difference: the zero of degrees Celsius has no meaning
-        allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (quantity == "temperature")
+        allowed = (
+            SAME_TEMPERATURE
+            if quantity == "temperature"
+            else (_ROUND_PI if quantity.endswith("frequency") else AVERAGED) * np.abs(first.values)
+        )
         agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
         same = column.heading == alike[0].heading
         choices = " or ".join(
@@ -360,23 +372,27 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
     Raises FileError for a modulus without a unit beside one that has it, and for a frequency
     likewise.
     """
-    assumed = []
-    for word, unit in {"frequency": "rad/s", "time": "s", "moduli": "Pa"}.items():
+    assumed: dict[str, str] = {}
+    for unit in ("rad/s", "s", "Pa"):
         alike = [column for column in taken if UNITS[column.name] == unit]
         without = [column for column in alike if not column.stated]
         if without and len(without) < len(alike):
-            advice = f"give units={{{without[0].name!r}: UNIT}}"
             raise FileError(
-                table.path, f"column {without[0].heading!r} has no unit, but others do: {advice}"
+                table.path,
+                f"column {without[0].heading!r} has no unit, but others like it do: "
+                f"{unit_advice(without[0].name)}",
             )
-        assumed += [f"{column.unit} ({word})" for column in without[:1]]
+        assumed |= {column.name: column.unit for column in without}
     if assumed:
-        text = f"{table.path}: columns without a unit are taken in {' and '.join(assumed)}"
-        doubt = f"; moduli of up to {moduli.max():g}: are these logarithms, or in MPa?" * bool(
-            moduli.max() < SOFTEST
+        text = f"{table.path}: columns without a unit are taken as with units={assumed}"
+        doubt = (
+            f"; a rubber has more than {moduli.max():g} Pa: are moduli in MPa, or logarithms?"
+            * bool(moduli.max() < SOFTEST)
         )
-        advice = f"write units into the file, or give units={doubt}"
-        warn_of_model(f"{text}: {advice}")
+        warn_of_model(
+            f"{text}: write the units into the file, or give units= with yours (in a shell: "
+            f"--units){doubt}"
+        )
 
 
 def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None:
@@ -393,12 +409,13 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     holds = np.ones(at.size, bool)
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
-    problem = f"an earlier row has the same {name} and another modulus"
-    advice = "for several temperatures add a column of temperature; of several strains keep one"
-    table.require(holds, f"{problem}: {advice}")
+    advice = "if temperatures differ, add a column of them; if strains differ, keep one strain"
+    table.require(holds, f"an earlier row has the same {name} and another modulus: {advice}")
     if change.max(initial=0.0) > _SCATTER:
-        text = f"rows of one {name} have moduli that differ by {np.expm1(change.max()):.0%}"
-        warn_of_model(f"{table.path}: {text}, and are taken as of one test: {advice}")
+        warn_of_model(
+            f"{table.path}: rows of one {name} have moduli that differ by "
+            f"{np.expm1(change.max()):.0%}, and are taken as repetitions of a test: {advice}"
+        )
 
 
 def temperatures_of_lines(table: Table) -> Floats | None:
@@ -441,8 +458,8 @@ def temperatures_of_lines(table: Table) -> Floats | None:
         if len(values) != 1 or np.isnan([*values]).any():
             raise FileError(
                 table.path,
-                f"line {numbers[start]}: write one temperature of the rows from here on above this "
-                "line, as 'Temperature 20 °C'",
+                f"the rows from line {numbers[start]} on need a line above them with one "
+                "temperature, as 'Temperature 20 °C'",
             )
         temperature[start:] = values.pop()  # blocks below overwrite theirs
     return temperature
@@ -457,7 +474,7 @@ def _celsius(number: str, unit: str, in_doubt: bool) -> float:
     in_doubt : whether the text around it makes it so.
     """
     value = float(number.replace(",", "."))
-    if in_doubt or (not unit and value > _KELVIN):
+    if in_doubt or (not unit and value > KELVIN):
         return np.nan
     factor, offset = conversion(unit or "degC", "degC")
     return factor * value + offset
@@ -482,18 +499,21 @@ def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
                 for each in ways
                 if each.unit not in NO_UNIT and (each.sure or "°" in each.unit)
             ]
-            hint = _LIKE_TEMPERATURE.match(heading) is not None
             # kelvins of one unit of the column; without a unit those of degrees Celsius
-            factor = max(map(_kelvins, units)) if units else float(hint)
+            factor = (
+                max(map(_kelvins, units))
+                if units
+                else float(bool(_LIKE_TEMPERATURE.match(heading)))
+            )
             spread = np.inf
             with suppress(FileError):
                 spread = factor * np.ptp(table.numbers(index).values)
             if factor and spread > SAME_TEMPERATURE:
                 raise FileError(
                     table.path,
-                    f"column {heading!r} looks like temperatures, which are not read: name it by "
-                    f"columns={{'temperature': {heading!r}}}, or remove it if it is not of the "
-                    "sample",
+                    f"column {heading!r} looks like temperatures, but is not read: name it by "
+                    f"columns={{'temperature': {heading!r}}}, or remove it if these are not those "
+                    "of the sample",
                 )
 
 

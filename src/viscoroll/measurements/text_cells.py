@@ -34,7 +34,11 @@ _TEXT = re.compile(r".*[^\W\d_].*|\d+[-:./]\d+[-:./]\d+.*|\d+:\d+.*")
 #: decimal mark and exponent as Python reads them
 _PYTHON = str.maketrans(",dD", ".ee")
 #: decimal mark, "" for an unknown one -> words of a message
-_MARKS = {"": "", ".": " with a decimal point", ",": " with a decimal comma"}
+_MARKS = {
+    "": "; correct it",
+    ".": " with a decimal point; correct it, or give decimal=','",
+    ",": " with a decimal comma; correct it, or give decimal='.'",
+}
 #: largest power of ten of a last digit: doubles end at 1e308
 _MOST = 300
 
@@ -103,15 +107,15 @@ def fault_of(cell: str, decimal: str) -> str:
     1.8e308.
     """
     if _GAP.fullmatch(cell):
-        return "is a missing value: remove its row"
+        return "is a missing value; write the number, or remove the row"
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
-        return "is larger than a double can be" if np.isinf(float(cell.translate(_PYTHON))) else ""
+        return "is too large, above 1.8e308" if np.isinf(float(cell.translate(_PYTHON))) else ""
     if _THOUSANDS.fullmatch(cell) or (not decimal and _NUMBER.fullmatch(cell)):
         return (
-            "may contain a separator of thousands, since both marks occur or all groups have three "
-            "digits: write only decimal marks"
+            "has a mark that may be a decimal mark or a separator of thousands; write for example "
+            "1150 or 1.15 in place of 1.150, and one decimal mark in the whole file"
         )
-    return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else ': remove its row'}"
+    return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else '; remove the row'}"
 
 
 def numbers_of(cells: list[str]) -> Numbers:
@@ -202,10 +206,10 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
                 "encoding", f"{name!r:.40}", "an encoding that Python knows, as 'utf-8'"
             ) from None
         except UnicodeError:
-            problem = f"is not written in {name}: give encoding='cp1252' or another"
+            problem = f"is not written in {name}: give its encoding, as encoding='cp1252'"
             continue
         if "\0" in text:
-            raise FileError(path, "is not a text file: it has null bytes")
+            raise FileError(path, "is not a text file, since it has null bytes: export it as CSV")
         # without Excel's own line on the separator
         text = re.sub(r"(?i)\Asep=[^\r\n][^\S\r\n]*(?=[\r\n]|\Z)", "", text)
         return re.split(r"\r\n|\r|\n", text)
@@ -430,7 +434,7 @@ def conversion(unit: str, wanted: str) -> tuple[float, float]:
     if unit in NO_UNIT:
         unit = "1"
     elif not may_be_unit(unit):
-        raise ParameterError("unit", unit, f"a unit that pint knows, of the dimension of {wanted}")
+        raise ParameterError("unit", unit, f"a known unit of the dimension of {wanted}")
     try:
         return conversion_factor(unit, wanted)
     except ParameterError:

@@ -99,15 +99,23 @@ class Table:
                 )
         return numbers_of(cells)
 
+    def refuse_several(self) -> None:
+        """Raise FileError for a file with several tables."""
+        if len(self.starts) > 1:
+            raise FileError(
+                self.path, f"has {len(self.starts)} tables: keep one of them in the file"
+            )
+
     def require(self, holds: Any, problem: str) -> None:
-        """Raise FileError, with the number of its line, for the first row for which a condition
-        does not hold.
+        """Raise FileError, with the number and the cells of its line, for the first row for which a
+        condition does not hold.
 
         holds : whether it holds for each row, shape (rows,), an array of truth values.
         problem : words on the fault where it does not hold, which end the message.
         """
         if not holds.all():
-            raise FileError(self.path, f"line {self.rows[int(np.argmin(holds))].number}: {problem}")
+            row = self.rows[int(np.argmin(holds))]
+            raise FileError(self.path, f"line {row.number} ({'; '.join(row.cells):.60}): {problem}")
 
 
 def read_table(
@@ -182,11 +190,10 @@ def read_table(
     names, units, (first, *_) = parts[0]
     starts = [rows[0].number for *_, rows in parts]
     if any(part[:2] != (names, units) for part in parts):
-        found = ", ".join(map(str, starts))
         raise FileError(
             path,
             f"has {len(parts)} tables with different headings (their rows begin in lines "
-            f"{found}): keep one of them in the file",
+            f"{', '.join(map(str, starts))}): keep one of them in the file",
         )
     rows = [row for *_, rows in parts for row in rows]
     mark = decimal or decimal_mark(
@@ -235,7 +242,9 @@ class _Layout:
         widths = Counter(len(line.cells) for line in self.lines if line.numeric)
         if not widths:
             raise FileError(
-                self.path, "has no row of numbers: a table has two columns of numbers or more"
+                self.path,
+                "has no row of numbers: write columns of numbers, separated by tabs, semicolons, "
+                "bars, commas or blanks",
             )
         self.width = widths.most_common(1)[0][0]
         self.cut = f"separated by {SEPARATORS[self.separator]}"
@@ -244,7 +253,7 @@ class _Layout:
         """Return the error, not raised, that names a ``line``, states a ``problem`` and quotes 60
         characters of it.
         """
-        return FileError(self.path, f"line {line.number} {problem}: {line.text[:_QUOTED]!r}")
+        return FileError(self.path, f"line {line.number} ({line.text[:_QUOTED]!r}) {problem}")
 
     def is_row(self, line: Line) -> bool:
         """Return whether a line is a row of numbers, and either as wide as most of these, or of two
@@ -282,13 +291,11 @@ class _Layout:
         if heads:
             for line in lines[: heads[0]]:
                 if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
-                    # with empty cells between them numbers are headings of groups of columns
-                    problem = (
-                        "has numbers above the headings: keep one table of the file"
-                        if all(line.cells)
-                        else "has headings of groups of columns: remove it, and keep one group"
+                    raise self.fault(
+                        line,
+                        "has numbers above the headings: remove it, and keep one table or one "
+                        "group of columns",
                     )
-                    raise self.fault(line, problem)
             return heads
         first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
         above = [
@@ -308,13 +315,14 @@ class _Layout:
         for line in lines[:first]:
             if not line.comment and len(line.cells) == width:
                 raise self.fault(
-                    line, "is neither headings nor numbers: remove it or begin it with #"
+                    line, "has neither headings nor numbers: remove it, or begin it with #"
                 )
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
                 raise self.fault(
                     line,
-                    f"contains column names: write {width} names, {self.cut} as the numbers are",
+                    "contains column names, but its separators differ from those of the numbers: "
+                    f"write {width} names {self.cut}",
                 )
         names = [f"column {n}" for n in range(width)]
         lines[:first] = [lines[first]._replace(text=str(names), cells=names, numeric=False)]
@@ -347,15 +355,15 @@ class _Layout:
             rows.pop()
         for row in rows:
             if not row.numeric:
-                advice = "remove it or begin it with #"
+                advice = "remove it, or begin it with #"
                 if self.footers:
-                    advice += "; a temperature of the rows below is written 'Temperature 20 °C'"
+                    advice += "; write the temperature of the rows below as 'Temperature 20 °C'"
                 raise self.fault(row, f"is not a row of numbers: {advice}")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
                     row,
                     f"has {len(row.cells)} cells {self.cut}, but line {line.number} has "
-                    f"{len(names)} headings: mend one of the two",
+                    f"{len(names)} headings: correct one of these two lines",
                 )
         return names, self.units(body[:first], len(names)), rows
 
@@ -394,7 +402,7 @@ class _Layout:
                 found = (cells + found)[:width]  # "" behind a line that is shorter
             elif not (line.comment or self.is_title(line.text)):
                 raise self.fault(
-                    line, f"is neither units nor numbers, {self.cut}: remove it or begin it with #"
+                    line, f"has neither units nor numbers {self.cut}: remove it, or begin it with #"
                 )
         return found
 
@@ -469,7 +477,7 @@ def find_column(table: Table, name: str) -> int | None:
     if len(found) > 1:
         headings = " and ".join(repr(table.headings[n]) for n in found)
         alike = exact or len({table.headings[n] for n in found}) < len(found)
-        advice = "rename or remove one in the file" if alike else "name one of them with its unit"
+        advice = "rename or remove one in the file" if alike else "give the heading with its unit"
         raise FileError(table.path, f"columns {headings} are both named {name!r}: {advice}")
     return found[0] if found else None
 
@@ -483,8 +491,11 @@ def missing_column(table: Table, name: str, advice: str = "") -> FileError:
     advice: words with their punctuation that end the message, as ": name one of these"; "" for
     none.
     """
-    found = f"{', '.join(map(repr, table.headings))}{suggestion(name, table.headings)}"
-    return FileError(table.path, f"has no column {name!r}; its columns are {found}{advice}")
+    return FileError(
+        table.path,
+        f"has no column {name!r}; its columns are {', '.join(map(repr, table.headings))}"
+        f"{suggestion(name, table.headings)}{advice}",
+    )
 
 
 def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
@@ -521,8 +532,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     index = find_column(table, name)
     if index is None:
         raise missing_column(table, name)
-    if len(table.starts) > 1:
-        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them in the file")
+    table.refuse_several()
     heading = table.headings[index]
     if not unit and MULTIPLIED.search(heading):
         unit = heading  # in which nothing is converted

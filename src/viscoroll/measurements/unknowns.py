@@ -198,7 +198,9 @@ def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
     pair = check_array(f"{argument} {name}", numbers, **bounds)
     if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):
         allowed = (
-            "(low, high), low < high" if argument == "unknown" else "(value, standard deviation)"
+            "(low, high) with low < high"
+            if argument == "unknown"
+            else "(value, standard deviation)"
         )
         raise ParameterError(f"{argument} {name}", describe_value(numbers), allowed)
     return pair.tolist()
@@ -238,7 +240,8 @@ def cylinder_of(
                 raise ParameterError(
                     record.label("temperature"),
                     record.temperature,
-                    f"left out, or given with shift={{{section!r}: ...}}, as vr.WLF(T0=20.0)",
+                    f"left out, or given with shift={{{section!r}: vr.WLF(T0=20.0)}}, in a file "
+                    f"with wlf = {{ T0 = 20.0 }} in [{section}]",
                 )
             changed = changed.at(record.temperature, shifts[section])
         if changed is not body:
