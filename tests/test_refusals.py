@@ -30,7 +30,7 @@ from scipy import stats
 import viscoroll as vr
 from viscoroll.laws.law_netcdf import law_table_of
 from viscoroll.presets import PAPER_CYLINDER
-from viscoroll.sampling import sample
+from viscoroll.sampling import points, sample
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 RUBBER_ROLLER = vr.presets.RUBBER_ROLLER
@@ -38,6 +38,7 @@ MANY_SCENES = vr.Scene(material=MANY, kappa=2.91, mu=0.2, gamma=700.0)
 BODIES = RUBBER_ROLLER.replace(material=vr.Bodies(vr.Prony([2.0], [1.0]), SERIES, 0.7))
 ROLL = {"roller": PAPER, "V0": 1.0, "omega0": 1.0, "t": 1e-3}
 FREE = {"roller": PAPER, "V0": [1.0, 1.0], "omega0": [1.0, 1.0], "t": 1e-3}
+ARRAY = np.array([1, 2])
 UNSTEADY = ROLL | {"roller": RUBBER_ROLLER, "V0": 30.0, "omega0": 30.0}
 
 
@@ -47,7 +48,7 @@ REFUSED = each(
         "method = 'direct': must be 'table' for derivatives": {"method": "direct", "slopes": True},
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
         "delta and omega are both given: give one of the two": {"omega": 1.1},
-        "V is a table: must be a column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
+        "V is a table: must be one column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
         "thickness/l0 = 0.04: must be at least 0.0625 in a call with several values": {
             "roller": THIN.replace(material=vr.Cover(1.0, nu=0.0, thickness=[0.04, 0.1]))
         },
@@ -62,7 +63,7 @@ REFUSED = each(
 REFUSED += each(
     vr.roll,
     {
-        "t = 0.002, 0.001 at rows 0, 1: must be in ascending order": {"t": [2e-3, 1e-3]},
+        "t = 0.002, 0.001 at index 0, 1: must be in ascending order": {"t": [2e-3, 1e-3]},
         "resolve = 1e-09: must be at least 2e-06: at most 500000 samples up to t = 1": {
             "torque": math.sin,
             "resolve": 1e-9,
@@ -102,7 +103,7 @@ REFUSED += each(
     vr.ensemble,
     {
         "V0 or omega0 has shape (1, 2): must be a number or a vector (n,)": {"V0": [[1.0, 2.0]]},
-        "V0 = 1: must be None, or 2, the prescribed V at t = 0": {"V": 2.0},
+        "V0 = 1: must be left out, or 2, the prescribed V at t = 0": {"V": 2.0},
         "V is empty: must be": {"V0": None, "V": []},
         "coordinates": {"V0": LABELLED, "omega0": LABELLED.assign_coords(run=["a", "c"])},
     },
@@ -112,7 +113,9 @@ REFUSED += each(
 REFUSED += each(
     vr.ensemble,
     {
-        "V0 = 1 m s-1 of motion 1: must be None, or 3 m s-1, the prescribed V": {"V": [1.0, 3.0]},
+        "V0 = 1 m s-1 of motion 1: must be left out, or 3 m s-1, the prescribed V": {
+            "V": [1.0, 3.0]
+        },
         "V0 = 1e+121 m s-1 of motion 1: must be at most 1.": {"V0": [1.0, 1e121]},
         "R |omega0|) = 9.99989e-321 m s-1 of motion 0: must be 0, or": {"V0": [1e-320, 1.0]},
     },
@@ -160,7 +163,7 @@ REFUSED += each(
 REFUSED += each(
     vr.Scene,
     {
-        "give alpha or material": {"alpha": None},
+        "neither alpha nor material is given": {"alpha": None},
         "material = 2.0 | Prony": {"alpha": None, "material": 2.0},
     },
     alpha=2.0,
@@ -173,7 +176,7 @@ REFUSED += each(
         "T_epsilon = 0.5: must be >= T_sigma": {"T_epsilon": 0.5},
         "material and E, nu, T_epsilon, T_sigma are both given": {"material": SOFT},
         "shapes R (2,), load (3,) do": {"R": [0.1, 0.2], "load": [1.0, 2.0, 3.0]},
-        "give material=, or all of E, nu, T_epsilon and T_sigma: T_sigma not given": {
+        "T_sigma not given: give all of E, nu, T_epsilon and T_sigma, or a material": {
             "T_sigma": None
         },
     },
@@ -197,8 +200,8 @@ REFUSED += each(
 REFUSED += each(
     sample,
     {
-        "give seed or rng": {"seed": None},
-        "design: 'grid' is not a design; choose from random, latin, sobol": {"design": "grid"},
+        "neither seed nor rng is given": {"seed": None},
+        "design = 'grid' (a text): must be 'random', 'latin' or 'sobol'": {"design": "grid"},
         "rng = -1: must be a Generator of numpy": {"seed": None, "rng": -1},
     },
     n=4,
@@ -228,6 +231,12 @@ REFUSED += each(
             lambda: vr.runs.run_ensemble("run.toml", "s.zarr"),
             lambda: vr.runs.estimate("run.toml"),
         ],
+        "progress = array([1, 2]) | must be": lambda: vr.runs.run_ensemble("", "", progress=ARRAY),
+        "cluster = array([1, 2]) | must be": lambda: vr.runs.run_ensemble(
+            vr.runs.read_run(vr.datasets.path("run.toml")), "s.zarr", cluster=ARRAY
+        ),
+        "name = array([1, 2]) | must be 'dma.csv', ": lambda: vr.datasets.path(ARRAY),
+        "design 'sobol' = 21202: must be": lambda: points("sobol", 0, 9, 21_202, 0, 9, 0),
     },
 )
 

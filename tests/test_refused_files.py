@@ -113,10 +113,10 @@ REFUSED = [
             "column 'j' of none.nc: the file does not exist": lambda: run(
                 "a preset", "j = 0.4", 'j = { file = "none.nc", column = "j" }'
             ),
-            "column 'j' of given.nc: the file has no 'j'": lambda: run(
+            "column 'j' of given.nc: the file has no column of this name": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{netcdf(grid())}", column = "j" }}'
             ),
-            "column 'j' of j.nc: the file is damaged, or no .nc file": lambda: run(
+            "column 'j' of j.nc: the file is damaged, or is not a .nc file": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{file("j", "j.nc")}", column = "j" }}'
             ),
             "dma.txt | line 2 ('4 5') has 2": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
@@ -228,6 +228,7 @@ REFUSED = [
     *each(
         of_roller,
         {
+            "line 1: [scene] needs alpha": "[scene]\nkappa = 2.0\nmu = 0.1",
             "alpha and creep are both given": SCENE_FILE + "creep = { J = [0.5], T = [1.0] }",
             "line 4: [cylinder] | unknown key 'Mu' | did you mean 'mu'?": "[cylinder]\nR = "
             "0.1\nm = 35.5\nMu = 0.2\n[material]\nE = 1e6\nnu = 0.5",
@@ -257,7 +258,7 @@ REFUSED = [
                 "j = 0.4",
                 f"j = {-(2**63) - 1}",
             ),
-            "has 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
+            "has the number 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
             "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
             "line 4 | : must have low < high and a probability above 0": (
                 "a preset",
@@ -270,7 +271,21 @@ REFUSED = [
                 "low = 0.0, high = 3e-3",
                 "low = -1e308, high = 1e308",
             ),
-            "line 16 | scenes differ": ("a preset", "block = 12", 'method = "flow"'),
+            "[heat] is given without [cylinder]": (
+                "a preset",
+                "[run]",
+                "[heat]\nambient = 20.0\nconductance = 1.0\n[run]",
+            ),
+            "[drive] V and omega are both given": (
+                "driven",
+                "brake = 0.01",
+                "V = 0.01\nomega = 0.01",
+            ),
+            "line 16 | where inputs other than V0 and omega0 are uncertain": (
+                "a preset",
+                "block = 12",
+                'method = "flow"',
+            ),
             "line 18: [run] summaries = []: must name at least one quantity": (
                 "a preset",
                 '["V", "x"]',
@@ -295,7 +310,7 @@ REFUSED = [
                 "brake = 0.01",
                 'brake = { times = [{ distribution = "uniform" }, 0.5], values = [1.0, 2.0] }',
             ),
-            "file.toml: line 4: [start] V0 = 0: must be None, or 0.01, the prescribed V at t = 0": (
+            "file.toml: line 4: [start] V0 = 0: must be left out, or 0.01, the prescribed V": (
                 "driven",
                 "brake = 0.01",
                 "V = 0.01",

@@ -68,11 +68,11 @@ SAID = [
     ),
     (
         lambda: vr.steady(PAPER, force=0.05, torque=0.07).reason,
-        "force + torque = 0.12 exceeds the largest rolling moment 0.0847415 (at V = 0.235061)",
+        "force + torque = 0.12 exceeds 0.0847415, the largest rolling moment (at V = 0.235061)",
     ),
     (
         lambda: vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason,
-        "force + torque/R =  | N/m exceeds  | over R  | N/m (at V = 0. | m/s)",
+        "force + torque/R =  | N/m, the largest rolling moment divided by R (at V = 0. | m/s)",
     ),
     (
         lambda: vr.steady(PAPER, force=0.3, torque=-0.28).reason,
@@ -80,7 +80,7 @@ SAID = [
     ),
     (
         lambda: vr.steady(PAPER, force=-0.175, torque=0.225).reason,
-        "no isolated steady speed: Q = 0.2",
+        "no isolated steady speed: Q/load = 0.2 equals mu",
     ),
     (
         lambda: vr.steady(PAPER.replace(alpha=1.0)).reason,

@@ -67,7 +67,7 @@ def test_the_accuracy_of_M_bounds_its_error_and_contact_states_it(noise, seed):
     V = np.geomspace(1.01 * low, 0.99 * high, 12)
     state = found.contact(V, delta=0.0, fields=("M", "M_error"))
     assert (np.abs(true.contact(V, delta=0.0, fields="M").M / state.M - 1.0) < state.M_error).all()
-    assert f"+-{state.M_error.max():.2g} (relative)" in found.validity(V).measured.sentence
+    assert f"+-{100.0 * state.M_error.max():.3g} %" in found.validity(V).measured.sentence
     with pytest.warns(vr.ModelWarning):
         assert found.contact(2.0 * high, delta=0.0, fields="M_error").M_error == np.inf
 

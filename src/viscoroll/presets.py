@@ -223,13 +223,13 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
     """
     check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
-        raise section_error(path, "", "", "one of preset, [scene] and [cylinder] is needed")
+        raise section_error(path, "", "", "one of preset, [scene] and [cylinder] must be given")
     words = {"preset": "preset", "scene": "[scene]"}
     beside = " and ".join(words[name] for name in words if name in content)
     if "cylinder" in content and beside:
         problem = f"[cylinder] is given beside {beside}: remove [cylinder], or {beside}"
         raise section_error(path, "", "cylinder", problem)
-    for name in SECTIONS:
+    for name in (*SECTIONS, "heat"):
         if name in content and "cylinder" not in content:
             raise section_error(
                 path, "", name, f"[{name}] is given without [cylinder]: add a section [cylinder]"
@@ -266,7 +266,9 @@ def make_roller(
     if "preset" in content:
         return preset(content["preset"]).replace(**given)
     # they are optional in the section, since a preset has them
-    if missing := [name for name in ("kappa", "mu") if name not in given]:
+    if missing := [
+        name for name in ("alpha",) * (series is None) + ("kappa", "mu") if name not in given
+    ]:
         raise ParameterError(missing[0], None, "given", f"needs {' and '.join(missing)}")
     return Scene(**given)
 
@@ -283,14 +285,12 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
     Returns the error, which is not raised.  Its message has no line if the file cannot be read
     again.
     """
-    sections = (
-        name for name, given in content.items() if isinstance(given, dict) and error.name in given
-    )
+    # of two parameters the first one
+    key = error.name.partition(",")[0]
+    sections = (name for name, given in content.items() if isinstance(given, dict) and key in given)
     default = next((name for name in SCHEMA if name in content), "")
     # the section "" is the top level, where preset stands
-    return section_error(
-        path, "" if error.name in content else next(sections, default), error.name, str(error)
-    )
+    return section_error(path, "" if key in content else next(sections, default), key, str(error))
 
 
 def read_sections(path: FilePath) -> dict[str, Any]:

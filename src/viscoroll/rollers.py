@@ -282,7 +282,7 @@ class Cylinder(Methods):
             raise exactly_one_error("material", solid, both=True)
         if material is None and missing:
             sentence = (
-                f"give material=, or all of E, nu, T_epsilon and T_sigma: {missing} not given"
+                f"{missing} not given: give all of E, nu, T_epsilon and T_sigma, or a material"
             )
             raise ParameterError(missing, None, "given, or material", sentence)
         optional = (*_SLS, "pressed")
@@ -591,7 +591,7 @@ def scene_of(
     with np.errstate(all="ignore"):
         kappa = R / contact_length(R, load, E_prime)
         gamma = load * T**2 / (m * R)
-    check_array("kappa = R/sqrt(32 R P/E')", kappa, above=0.0)
-    check_array("gamma = P T_ref^2/(m R)", gamma, above=0.0)
+    check_array("kappa (R divided by the contact length at rest)", kappa, above=0.0)
+    check_array("gamma (load times T_ref^2, divided by m R)", gamma, above=0.0)
     material = "alpha" if isinstance(law, float | np.ndarray) else "material"
     return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{material: law})

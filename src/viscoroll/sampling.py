@@ -28,11 +28,11 @@ from .core import (
     NDArray,
     ParameterError,
     check_array,
+    check_choice,
     check_integer,
     check_number,
     check_one_given,
     describe_value,
-    unknown_name_error,
 )
 
 __all__ = ["Sample", "sample"]
@@ -128,17 +128,16 @@ def sample(
         try:
             seed = int(np.random.default_rng(rng).integers(2**63))
         except (TypeError, ValueError):
-            allowed = "a Generator of numpy, or a seed of one"
+            allowed = "a Generator of numpy, or a whole number >= 0, its seed"
             raise ParameterError("rng", describe_value(rng), allowed) from None
     n = check_integer("n", n, 1, 10**12)
     seed = check_integer("seed", seed, 0, 2**63 - 1)
-    if design not in get_args(Design):
-        raise unknown_name_error("design", design, get_args(Design), "a design")
+    check_choice("design", design, *get_args(Design))
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]
     rows = points(design, seed, n=n, dimensions=len(random), start=0, stop=n, block=0)
     with np.errstate(all="ignore"):  # a draw that overflows is infinite, which is refused
         drawn = {
-            name: check_array(name, quantities[name].ppf(column))
+            name: check_array(f"draws of {name}", quantities[name].ppf(column))
             for name, column in zip(random, rows, strict=True)
         }
     draws = Sample()
@@ -165,8 +164,8 @@ def _is_distribution(name: str, value: Any) -> bool:
         check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
         allowed = (
-            "a finite number or a frozen scipy.stats distribution"
-            + " with a finite median (scale > 0)" * random
+            "a finite number, or a distribution of scipy.stats with parameters, as norm(0.3, 0.01)"
+            + ", and with a finite median (scale > 0)" * random
         )
         raise ParameterError(name, f"{value!s:.60}", allowed) from None
     return random
@@ -291,10 +290,11 @@ def _sequence(seed: int, dimensions: int) -> Any:
     seed: seed of the scrambling, in [0, 2^63).
     dimensions: number of coordinates of a point, >= 1.
     Returns a :class:`scipy.stats.qmc.Sobol` of 52 bits.
-    Raises ValueError of scipy for more than 21201 dimensions.
+    Raises ParameterError for more than 21201 dimensions, for which scipy has no numbers.
     """
     from scipy.stats import qmc
 
+    check_integer("number of random quantities with design 'sobol'", dimensions, 1, 21_201)
     return qmc.Sobol(dimensions, bits=_BITS, rng=np.random.default_rng(seed))
 
 

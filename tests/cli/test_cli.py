@@ -305,7 +305,7 @@ REFUSED = {
     "plot figure-9 -o f.png": "'figure-9' is not a file that can be plotted: give FILE.nc",
     "sensitivity run.toml -o s.png": "'s.png' must end in .txt or .csv or .nc",
     "ensemble run.toml -o all.nc": "'all.nc' must end in .zarr",
-    "ensemble run.toml -o s.zarr --cluster far": "'local' or 'tcp://host:port'",
+    "ensemble run.toml -o s.zarr --cluster far": "'tcp://host:port' of a dask scheduler",
     "ensemble run.toml --cluster local": "--cluster = local: must be left out without -o",
     "ensemble run.toml --threads 0": "threads = 0: must be a whole number >= 1",
     "ensemble": "the following arguments are required: RUN.toml",

@@ -72,7 +72,7 @@ REFUSED = [
         partial(vr.Material.lsdyna, [1e6]),
         {
             "G_inf and beta = 0": {"beta": [0.0], "nu": 0.4, "G_inf": 1e6},
-            "give nu or bulk": {"beta": [1.0], "G_inf": 1e6},
+            "neither nu nor bulk is given": {"beta": [1.0], "G_inf": 1e6},
         },
     ),
     *each(
@@ -252,7 +252,7 @@ REFUSED = [
                 ),
                 1024,
             ),
-            "summaries = x at t = 0: it varies by no more than": partial(
+            "summaries = x at t = 0 (varies by no more than": partial(
                 run, "unsteady", "t = [1.0, 3.0]", 't = 0.0\nsummaries = ["x"]'
             ),
             "[correlation] = | E_2 | omega0 | must be left out": partial(
@@ -331,7 +331,7 @@ REFUSED = [
                 ROLLER,
                 vr.Material.elastic(200000000000.0, 0.3),
             ),
-            "give material or alpha": (),
+            "neither material nor alpha is given": (),
             "alpha = 11.0": {"alpha": 11.0},
             "alpha = 4 to 2": {"alpha": (4, 2)},
         },

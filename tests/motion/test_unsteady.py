@@ -15,7 +15,7 @@ from pipeline.evidence.prove.motion import balance
 #: nowhere more unsteady than 0.22: it may pass V = 0
 GENTLE = vr.Scene(alpha=3.0, kappa=5.0, mu=0.5, gamma=1.5, j=0.8)
 T = np.linspace(0.0, 8.0, 17)
-TOO_SLOW = "too slow for the unsteady correction"
+TOO_SLOW = "became too slow for unsteady=True"
 
 
 def second_method(scene, V0, omega0, t, force=0.0, torque=0.0):
@@ -150,7 +150,7 @@ def test_a_short_rest_costs_less(t_w):
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the look-up of a motion so slow
 def test_caught_in_the_imprint():
     """V = 1.3 is 4.3 cm/s, of which validity says it too."""
-    with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of the standstill"):
+    with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of its standstill"):
         m = vr.roll(ROLLER, 1.3, 1.3, T[:3], rested=True, unsteady=True)
     V0 = np.array([1.3, 30.0, -1.3])
     e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, unsteady=True, method="auto")

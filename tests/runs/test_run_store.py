@@ -145,7 +145,10 @@ def test_other_folders_are_refused(tmp_path, whole):
     (thesis / "chapter.tex").write_text("dear")
     for call, words in (
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
-        (partial(run_ensemble, run, thesis), "not a results store, it contains chapter.tex"),
+        (
+            partial(run_ensemble, run, thesis),
+            "no results store, as it has chapter.tex: give another folder",
+        ),
         (partial(verify, thesis), "not a results store"),
     ):
         refused_file(call, words)
@@ -200,9 +203,9 @@ def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch
         (
             'design = "latin"',
             "n = 1200",
-            "a Latin hypercube, whose strata depend on n: keep n = 350",
+            "a Latin hypercube, whose points depend on n: keep n = 350",
         ),
-        ('design = "sobol"', "n = 1200", "which is balanced only for a power of two: set n = 2048"),
+        ('design = "sobol"', "n = 1200", "which is even only for a power of two: set n = 2048"),
         ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
         ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
     ],

@@ -145,7 +145,7 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
         if not os.path.isdir(os.path.dirname(text) or "."):
             raise ArgumentTypeError(
-                f"{text!r} cannot be written: its folder does not exist, make it first"
+                f"{text!r} cannot be written: its folder does not exist, make the folder first"
             )
         if os.path.isdir(text) and not text.endswith(".zarr"):
             raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")

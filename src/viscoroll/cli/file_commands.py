@@ -144,13 +144,13 @@ def _units(text: str) -> Any:
         help="moduli whose overlap determines the shift (default: both)",
     ),
     option(
-        "--modes", type=int, help="largest number of modes (default: as few as the misfit needs)"
+        "--modes", type=int, help="largest number of terms of the series (default: by --misfit)"
     ),
     option(
         "--misfit",
         type=float,
         default=0.01,
-        help="required rms of the relative errors (default: 0.01)",
+        help="allowed root mean square of the relative errors of the fit (default: 0.01)",
     ),
     option(
         "--nu", type=float, default=0.49, help="Poisson's ratio, constant in time (default: 0.49)"
@@ -159,7 +159,7 @@ def _units(text: str) -> Any:
     option(
         "--force",
         action="store_true",
-        help="write the file even if the fit misses the misfit, and mark it",
+        help="write the file even if the fit exceeds --misfit, and state that in the file",
     ),
     output(".toml", ".nc", required=False),
 )
@@ -246,7 +246,7 @@ def _wlf(text: str) -> vr.WLF:
     option(
         "file",
         metavar="DATA.toml",
-        help="known and unknown parameters, and files of the measurements",
+        help="TOML file with known and unknown parameters, and files of the measurements",
     ),
     option(
         "--starts",
@@ -379,7 +379,7 @@ def law(arguments: Namespace) -> None:
     file = arguments.file
     if file and arguments.alpha:
         found = f"is given beside {file}, which has a material of its own"
-        raise described_error("alpha", found, "left out")
+        raise described_error("--alpha", found, "left out")
     material = None if file is None else read_law_source(file)
     _export(vr.tables.law(material, alpha=arguments.alpha), arguments.output)
 
@@ -403,8 +403,8 @@ def law(arguments: Namespace) -> None:
     option(
         "--method",
         default="table",
-        help="table (default): the law of the scene; direct: numerical roots "
-        "of the equations of the paper",
+        help="table (default): the law of the scene; direct: numerical solution "
+        "of the equations in each node",
     ),
     output(*_GRID),
 )
@@ -444,7 +444,7 @@ def build(arguments: Namespace) -> None:
         type=int,
         nargs=2,
         metavar=("SPEEDS", "CREEPS"),
-        help="numbers of nodes (default: 5 to 13 a decade of speed, 27)",
+        help="numbers of nodes of speed and of creepage (default: 5 to 13 a decade, and 27)",
     ),
     output(".nc", ".cdf", ".h"),
 )
@@ -550,12 +550,12 @@ def export(arguments: Namespace) -> None:
     option(
         "file",
         metavar="MATERIAL_OR_LAW",
-        help="TOML with [material], perhaps [base], and perhaps [cylinder], whose numbers are the "
-        "start values; the "
+        help="TOML file with [material], perhaps [base], and perhaps [cylinder], whose numbers are "
+        "the start values; the "
         "file of `viscoroll tables law`; the netCDF of a material; or the name of a preset",
     ),
     option("--model", default="Roller", help="Roller (default) or ContactElement"),
-    option("--fmi", type=int, default=2, help="version of the standard: 2 (default) or 3"),
+    option("--fmi", type=int, default=2, help="version of the FMI standard: 2 (default) or 3"),
     output(".fmu"),
 )
 def fmu(arguments: Namespace) -> None:

@@ -248,7 +248,7 @@ def steady(arguments: Namespace) -> None:
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
         further = len(lines) - _MOST_LINES
-        lines[_MOST_LINES:] = [f"{further} further loads, counted from 0, have no steady speed"]
+        lines[_MOST_LINES:] = [f"{further} further loads (counted from 0) have no steady speed"]
     if (
         arguments.output is not None or arguments.format != "text"
     ):  # a table for programs has no heading
@@ -406,7 +406,7 @@ def ensemble(arguments: Namespace) -> None:
 
 @command("verify", option("store", metavar="STORE.zarr", help="results of viscoroll ensemble"))
 def verify(arguments: Namespace) -> int:
-    """Check every file of a results store against its SHA-256.
+    """Check every file of a results store against its checksum (SHA-256).
 
     The exit code is 1 if a file differs or is missing.
 
@@ -474,7 +474,7 @@ def sensitivity(arguments: Namespace) -> None:
             f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed "
             f"{about['seed']}",
             *(
-                f"{about[key]} motions {key.removeprefix('ended: ')}"
+                f"{about[key]} motions: {key.removeprefix('ended: ')}"
                 for key in about
                 if key.startswith("ended: ")
             ),
@@ -569,7 +569,7 @@ def _figure_of_netcdf(path: str) -> Any:
     except (AttributeError, KeyError, ValueError) as error:
         raise vr.FileError(
             path,
-            "lacks a variable or an attribute of a result: write the result again",
+            "is not a result of viscoroll, or lacks a part of one: write the result again",
         ) from error
 
 

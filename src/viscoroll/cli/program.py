@@ -98,8 +98,8 @@ def warm_up(arguments: argparse.Namespace) -> None:
         bar.set_description(name)
         call()
     print(
-        f"{len(calls)} entry points are ready in {cache_root()}, {time.perf_counter() - start:.1f} "
-        "s"
+        f"the compiled functions of {len(calls)} kinds of calls are in {cache_root()}, after "
+        f"{time.perf_counter() - start:.1f} s"
     )
 
 

@@ -38,8 +38,7 @@ LEAST_KAPPA = 1.0
 #: Sentence of the warning for a kappa below :data:`LEAST_KAPPA`.
 NOT_SMALL = (
     "kappa = R/l0 is below 1: at rest the contact is longer than the radius, and the half-space "
-    "model does not apply "
-    "(are moduli in Pa and the load in N/m?)"
+    "model does not apply (are moduli in Pa and the load in N/m?)"
 )
 #: Largest rise of temperature by a motion, K: a_T of rubber changes by 10 % a kelvin at the most.
 HEAT_LIMIT = 1.0
@@ -198,22 +197,22 @@ UNKNOWN = Validity(
             "the shear wave speed",
             "the quasi-steady assumption for motions is not checked: give the scene a gamma",
             "the surface speeds of the two bodies are not compared: give omega=",
-            "Dundurs' constant must be 0, as for identical materials; a scene does not state it: "
-            "use a Cylinder",
-            "the transit frequency is not compared with the measured band of the material: give "
-            "the Material measured=",
+            "Dundurs' constant, by which shear changes the pressure, must be 0, as for identical "
+            "materials; a scene does not state the materials: use a Cylinder",
+            "the transit frequency (speed divided by contact length) is not compared with that of "
+            "the measurements: give the Material measured=",
             "no thickness is given: the law is that of a half-space.  It applies to a layer if the "
             "contact is at most "
             f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
-            "examined for layers only; for half-spaces bodies compares Dundurs' constant with its "
-            "limit",
+            "the effect of shear on the pressure is estimated for layers only; for half-spaces see "
+            "Dundurs' constant in the line bodies",
             "the state must be plane strain (a long cylinder, or one between walls) or plane "
             "stress (a thin disc)",
-            "the strain of the contact is not compared with that of the data: a scene does not "
-            "state the materials",
-            "the bodies have one temperature: roller.temperature finds that of long rolling, and "
-            "up to a Biot number of 0.75 it stands for a body (vr.uniform_temperature); give "
-            "motion.validity a capacity= to compare the heat of a motion",
+            "the strain of the contact is not compared with that of the measurements: a scene does "
+            "not state the materials, use a Cylinder",
+            "each body has one temperature: roller.temperature finds that of long rolling, "
+            "vr.uniform_temperature tells whether one suffices for a body; to check that of a "
+            "motion, call its validity(capacity=) with the heat stored per kelvin",
         )
     )
 )
@@ -222,8 +221,8 @@ UNKNOWN = Validity(
 UNKNOWN_OF_COVERS = Assumption(
     None,
     None,
-    "not checked for motions on a layer of finite thickness: N, by which they are compared with "
-    "steady rolling, is not computed for layers; states at a constant speed do not need it",
+    "the quasi-steady assumption is not checked on a layer of finite thickness, since the added "
+    "mass N of speed changes is not computed there; states at a constant speed do not need N",
 )
 
 
@@ -275,9 +274,8 @@ def assess_small_contact(reach: Any) -> Assumption:
     return Assumption(
         reach <= REACH_LIMIT,
         reach,
-        f"the contact reaches {far:.2g} R from the axis, where the parabola in place of the circle "
-        "has an error of "
-        f"{25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) is allowed"
+        f"the contact reaches {far:.2g} R from the axis, where the parabola in place of the "
+        f"circle has an error of {25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) is allowed"
         + "; reduce the load, or take a stiffer material"
         * (far > REACH_LIMIT),
     )
@@ -297,7 +295,9 @@ def assess_position(epsilon: Any) -> Assumption:
         if ahead > 1.0
         else "the axis is above the contact"
     )
-    return Assumption(epsilon <= 1.0, epsilon, f"epsilon = {ahead:.2g}: {where}")
+    return Assumption(
+        epsilon <= 1.0, epsilon, f"epsilon (shift of the contact) = {ahead:.2g}: {where}"
+    )
 
 
 def assess_heat(losses: Any, capacity: float) -> Assumption:
@@ -311,8 +311,7 @@ def assess_heat(losses: Any, capacity: float) -> Assumption:
         rise <= HEAT_LIMIT,
         rise,
         f"the losses of the motion warm a body by up to {largest(rise):.2g} K; up to "
-        f"{HEAT_LIMIT:g} K is allowed, as a "
-        "motion has one temperature",
+        f"{HEAT_LIMIT:g} K is allowed, as a motion is computed at one temperature",
     )
 
 
@@ -330,9 +329,8 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
         ~full_slip | (size <= CREEP_LIMIT),
         size,
         f"in full slip the surface speeds of the two bodies differ by {100.0 * most:.2g} % of V; "
-        "up to "
-        f"{100.0 * CREEP_LIMIT:g} % is allowed, since the rolling moment is computed with the "
-        "speed of the axis"
+        f"up to {100.0 * CREEP_LIMIT:g} % is allowed, since the rolling moment is computed with "
+        "the speed of the axis"
         if most > 0.0
         else (
             "the surface speeds of both bodies are nearly equal, since the contact is in partial "
@@ -386,13 +384,12 @@ def assess_coupling(long: float, instant: float, *, like: bool, solved: bool = F
         )
     if worst == 0.0:
         return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not change the pressure")
-    sentence = f"Dundurs' constant is {long:.2g} for long times and {instant:.2g} for the instant; "
+    sentence = f"Dundurs' constant is {long:.2g} for slow and {instant:.2g} for sudden loading; "
     if solved:
-        sentence += "states with traction are taken from a table of the coupled solution"
+        sentence += "states with traction are from a table of pressure and shear solved together"
         return Assumption(True, worst, sentence)
     sentence += (
-        f"up to {DUNDURS_LIMIT} in size is "
-        "allowed: the theory neglects the part of the pressure that shear causes"
+        f"up to {DUNDURS_LIMIT} in magnitude is allowed, as pressure caused by shear is neglected"
     )
     return Assumption(abs(worst) <= DUNDURS_LIMIT, worst, sentence)
 
@@ -419,11 +416,11 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
         low, high = data.transit_band
         holds = holds & (low <= frequency) & (frequency <= high) & (data.misfit <= MISFIT_LIMIT)
         sentence += f"; {body} was measured from {data}"
-        sentence += f", above {MISFIT_LIMIT:.0%}: the fit misses its data" * (
+        sentence += f", above the allowed {MISFIT_LIMIT:.0%}: the fit misses its data" * (
             data.misfit > MISFIT_LIMIT
         )
     if (known := error[np.isfinite(error)]).size:
-        sentence += f"; inside that band the data determine M to +-{known.max():.2g} (relative)"
+        sentence += f"; inside that band M is accurate to +-{100.0 * known.max():.3g} %"
     return Assumption(holds, frequency, sentence)
 
 

@@ -71,14 +71,14 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
         return Assumption(
             None,
             value,
-            f"{sentence}; that of the data is not known: give the Material measured.strain",
+            f"{sentence}; that of the measurements is not known: give strain= in vr.Measured",
         )
     holds = True
     for name, strain in known.items():
         own = strains[name] / strain
         holds = holds & (own <= STRAIN_RATIO) & ((own >= 1.0 / STRAIN_RATIO) | (V == 0.0))
         sentence += f"; {name} was measured at {100.0 * strain:.2g} %"
-    return Assumption(holds, value, f"{sentence}: between a third and three times that is allowed")
+    return Assumption(holds, value, f"{sentence}; a third to three times that strain is allowed")
 
 
 def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
@@ -439,8 +439,8 @@ class BodyData:
             plane=Assumption(
                 None,
                 None,
-                f"the state is taken as {kind}; the load is {weights[1]:.3g} times m g, g = 9.81 "
-                "m/s2",
+                f"the state is taken as {kind}; the load is {weights[1]:.3g} times the weight m g, "
+                "g = 9.81 m/s2",
             ),
             strain=assess_strain(self, V, length, self.load),
         )

@@ -304,7 +304,7 @@ class Law:
 
         _, scene, scale = resolve_model(roller, "law")
         refuse_arrays(
-            roller, scene, ("alpha", "kappa", "mu"), "one number: a law belongs to one scene"
+            roller, scene, ("alpha", "kappa", "mu"), "one number, as a law is of one roller"
         )
         table = scene.rolling_law
         assert table is not None
@@ -429,7 +429,7 @@ class Law:
         V, omega: finite, arrays of shape (), in the units of the roller.
         """
         refuse_overflow(self._kappa, V)
-        allowed = "smaller in magnitude: omega T_ref exceeds the largest double, 1.8e308"
+        allowed = "smaller in magnitude: omega T_ref exceeds the largest number, 1.8e308"
         raise ParameterError("omega", f"{float(omega):g}", allowed)
 
     @property

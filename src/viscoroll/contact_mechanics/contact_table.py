@@ -141,19 +141,19 @@ def field_names(
         names += tuple(name for name in more if name not in names)
     added: tuple[str, ...] = (FREE_CREEP,) if cover else ()
     if method == "coupled":
-        allowed = "left out: method 'coupled' computes no derivatives and no N"
+        allowed = "left out: method 'coupled' computes no derivatives and no added mass N"
         refuse_fields(names, (*_ALL_SLOPES, UNSTEADY), allowed)
         added = (*OF_BODIES, *ONSETS, *OF_COUPLED[:-1])
     else:
         refuse_fields(names, OF_COUPLED, "left out, or computed with method='coupled'")
         if method == "direct":
             if not set(_ALL_SLOPES).isdisjoint(names):
-                allowed = "'table' for derivatives, which the equations of the paper do not give"
+                allowed = "'table' for derivatives, which method 'direct' does not compute"
                 raise ParameterError("method", "'direct'", allowed)
             only_table = (UNSTEADY, GRIP, FREE_CREEP, *ONSETS)
             refuse_fields(only_table, names, "left out, or computed with method='table'")
         if cover:
-            allowed = "left out for a cover: N is not computed for a layer of finite thickness"
+            allowed = "left out for a cover: the added mass N is not computed for layers"
             refuse_fields((UNSTEADY,), names, allowed)
     return tuple(dict.fromkeys(names + added)) if added and fields is None else names
 
@@ -308,7 +308,7 @@ def evaluate_contact(
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
-        allowed = "left out for many materials in one call: make a call for each of them"
+        allowed = "left out for many materials in one call: make a call for each material"
         refuse_fields(names, (UNSTEADY,), allowed)
         # the index of the material stands in the place of alpha
         arrays["alpha"] = np.arange(len(material), dtype=float)
@@ -402,7 +402,7 @@ def evaluate_law(
             if loop(laws, request, stop - start):
                 raise ConvergenceError(
                     f"contact: method='direct' did not converge for one of the states {start} to "
-                    f"{stop - 1}: use method='table'"
+                    f"{stop - 1}, counted from 0: use method='table'"
                 )
         elif names != (UNSTEADY,):
             loop(laws, request, scratch, stop - start)
@@ -555,7 +555,7 @@ def refuse_beyond(law: LawTable, u: Any) -> None:
     most = law.coupled.fastest if law.coupled is not None else np.inf
     largest = float(np.max(u, initial=0.0))
     if largest > most * (1.0 + 1e-12):
-        raise OutOfTableError("kappa |V|", largest, 0.0, most)
+        raise OutOfTableError("kappa |V| (V in units of R/T_ref)", largest, 0.0, most)
 
 
 def refuse_overflow(kappa: Floats, V: Floats, fastest: float = FASTEST) -> None:
@@ -576,5 +576,5 @@ def refuse_overflow(kappa: Floats, V: Floats, fastest: float = FASTEST) -> None:
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:
-        allowed = f"at most {fastest:g}, R/l0 times |V| in units of R/T_ref: reduce V"
-        raise ParameterError("kappa |V|", f"{largest:g}", allowed)
+        allowed = f"at most {fastest:g}: reduce V"
+        raise ParameterError("kappa |V| (V in units of R/T_ref)", f"{largest:g}", allowed)

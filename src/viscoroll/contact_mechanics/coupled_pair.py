@@ -349,7 +349,7 @@ class CoupledPair(NamedTuple):
         material = scene.material
         if np.size(scene.alpha) != 1 or (material is not None and material.shape):
             shape = np.shape(scene.alpha)
-            allowed = "a single one with method='coupled': make a call for each"
+            allowed = "a single material with method='coupled': make a call for each"
             sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
             name = "alpha" if material is None else "material"
             raise ParameterError(name, shape, allowed, sentence)

@@ -118,11 +118,9 @@ def tabulate(
     """
     count, across = (None, NODES) if nodes is None else nodes
     if count is not None:
-        check_integer("nodes", count, 4, 1000)
-    if check_integer("nodes", across, 9, 1001) % 2 == 0:
-        raise ParameterError(
-            "nodes", across, "an odd number: the nodes of creepage are symmetric about 0"
-        )
+        check_integer("nodes of speed", count, 4, 1000)
+    if check_integer("nodes of creepage", across, 9, 1001) % 2 == 0:
+        raise ParameterError("nodes of creepage", across, "odd, as they are symmetric about 0")
     u = speed_nodes(pair, count)
     t = np.arange(-(across // 2), across // 2 + 1) / (across // 2)  # 0 exactly in the middle
     speeds = np.concatenate([[0.0], u, [math.inf]])

@@ -304,7 +304,7 @@ class FreeRolling:
         Raises ParameterError for a cover, whose N is not known.
         """
         scene = scene.uncoupled  # a free roller has hardly any traction
-        why = "the added mass N in M = M(V) + N dV/dt, on which free rolling depends, is not known"
+        why = "free rolling is not computed, as it depends on the added mass N, which is not known"
         refuse_cover(scene, why)
         materials: Any
         unit: Any

@@ -177,8 +177,7 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
         ).sentence
         causes.append(
             f"M and the contact length are extrapolated beyond the measurements: {sentence}; "
-            "validity(V).measured "
-            "reports which speeds are inside"
+            "validity(V).measured reports which speeds are inside"
         )
     if causes:
         _warned_records.update(records)
@@ -200,9 +199,9 @@ def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool
         return False
     _warned_records.update(data)
     _warn(
-        f"{share:.1%} of the motions start outside the frequencies at which the material was "
-        "measured (at the medians "
-        f"of the inputs it was measured from {'; '.join(map(str, data))}): M is extrapolated there"
+        f"the rolling moment M is extrapolated: {share:.1%} of the motions start outside the "
+        "frequencies at which the material was measured "
+        f"(at the medians of the inputs {'; '.join(map(str, data))})"
     )
     return True
 
@@ -315,8 +314,7 @@ def _start_faults(
     ):
         faults.append(
             "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more "
-            "than a tenth of "
-            "the distance"
+            "than a tenth of the distance"
         )
     return faults
 

@@ -388,12 +388,12 @@ class Parameters(Roller):
         several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
         if several * mus.size != 1:
             found = (
-                f"needs {several * mus.size} tables of the coupled solution, each of which takes "
-                f"about {SECONDS} s on two cores"
+                f"needs {several * mus.size} tables of pressure and shear solved together, each of "
+                f"which takes about {SECONDS} s on two cores"
             )
             allowed = (
-                "one body and one mu in a call; or give coupled=False, for the law that takes "
-                "coupling to first order"
+                "one material and one mu in a call; or give coupled=False for the fast law, "
+                "which needs no table"
             )
             raise described_error("material" if several > 1 else "mu", found, allowed)
         if self._made is None:
@@ -525,8 +525,8 @@ def resolve_model(
     scene = roller.scene()
     if moves and scene.gamma is None:
         sentence = (
-            f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time "
-            "scale, but gamma is not given"
+            f"{call} needs the scene's gamma = P T_epsilon^2/(m R), the ratio of load to inertia, "
+            "but gamma is not given: give Scene(..., gamma=)"
         )
         raise ParameterError("gamma", None, "a number > 0", sentence)
     return roller, scene, roller.scale
@@ -546,8 +546,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            "coupled = True: the law of these bodies is a table of the coupled solution, with "
-            f"which {why}; give coupled=False for the law that takes coupling to first order",
+            "the law of these bodies is a table of pressure and shear solved together: "
+            f"{why}, or give coupled=False for the fast law",
         )
 
 
@@ -579,7 +579,7 @@ def refuse_arrays(
             cause = next(each for each in (name, *_CAUSES) if np.shape(given.get(each, 0.0)))
             if cause == "material":
                 raise ParameterError(
-                    cause, describe_value(given[cause]), "a single one: make a call for each"
+                    cause, describe_value(given[cause]), "a single material: make a call for each"
                 )
             raise shape_error(cause, np.shape(given[cause]), allowed)
 
@@ -594,4 +594,6 @@ def _refuse_ratio(mu: Floats, kappa: Floats) -> None:
         ratio = np.asarray(mu / kappa)
     wrong = ratio[~((low <= ratio) & (ratio <= high))]
     if wrong.size:
-        raise ParameterError("mu/kappa", f"{wrong.flat[0]}", f"in [{low:g}, {high:g}]")
+        raise ParameterError(
+            "mu/kappa (kappa = R/l0)", f"{wrong.flat[0]}", f"in [{low:g}, {high:g}]"
+        )

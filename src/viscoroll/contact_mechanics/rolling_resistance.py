@@ -206,8 +206,8 @@ def branches(law: LawTable, gain: float) -> Branches:
         # in units that are 1 in a scene
         raise described_error(
             "gain on V",
-            f"is {gain:g} load T_ref/R",
-            f"0, or {low:g} to {high:g} load T_ref/R in magnitude",
+            f"is {gain:g} times load T_ref/R",
+            f"0, or in magnitude {low:g} to {high:g} times load T_ref/R",
         )
     nodes = speed_nodes(law)
     flat = np.exp2(find_zeros(lambda x: _curve(law, gain, np.exp2(x))[1], nodes))

@@ -562,7 +562,7 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     if wrong.any():
         allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
         raise ParameterError(
-            "R/l0 (force + torque/R)/load",
+            "force + torque/R, divided by the load and times R/l0,",
             f"{total[wrong][0]:g}",
             f"{allowed} (R = load = 1 in a scene)",
         )

@@ -309,7 +309,7 @@ def _cancelling_error(of_force: float, of_torque: float) -> ParameterError:
     """Return the error of dimensionless gains on omega, of force and torque, that nearly cancel."""
     return described_error(
         "gains on omega of force and torque",
-        f"{of_force:g} and {of_torque:g} nearly cancel",
+        f"are {of_force:g} and {of_torque:g}, which nearly cancel",
         "numbers whose sum is farther from 0, else the traction on a layer is undetermined",
     )
 

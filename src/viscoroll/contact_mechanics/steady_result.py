@@ -117,7 +117,7 @@ class Diagnosis(NamedTuple):
             are dimensionless; of a scene all are.
         """
         name, moment, of_load, of_speed = (
-            ("force + torque/R", "rolling moment over R", " N/m", " m/s")
+            ("force + torque/R", "rolling moment divided by R", " N/m", " m/s")
             if scale.si
             else ("force + torque", "rolling moment", "", "")
         )
@@ -132,11 +132,9 @@ class Diagnosis(NamedTuple):
             V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
-                beyond = f"{at} any omega beyond the stick limit is steady"
-                return (
-                    f"no isolated steady speed: Q = {Q:.6g} equals the friction limit, and {beyond}"
-                )
-            return f"Q = {Q:.6g} is needed {at}, which exceeds the friction mu = {mu:.6g}"
+                beyond = f"{at} any omega with full slip in this direction is steady"
+                return f"no isolated steady speed: Q/load = {Q:.6g} equals mu, and {beyond}"
+            return f"Q/load = {Q:.6g} is needed {at}, which exceeds the friction mu = {mu:.6g}"
         if self.elastic:
             if at_rest == 0.0:
                 return (
@@ -144,17 +142,17 @@ class Diagnosis(NamedTuple):
                     "every V is steady"
                 )
             return (
-                f"{name} = {total:.6g}{of_load} is not 0, and elastic bodies roll without "
-                "resistance"
+                f"{name} = {total:.6g}{of_load} is not 0, but elastic bodies roll without "
+                "resistance: no speed is steady"
             )
         M, V = (value / kappa for value in self.maximum)
         if np.isnan(M):
             return (
-                f"{name} with its feedback, {total:.6g}{of_load} at rest, balances the rolling "
-                "moment at no speed"
+                f"{name} with its feedback ({total:.6g}{of_load} at rest) is at no speed equal to "
+                f"the {moment}"
             )
         return (
-            f"{name} = {total:.6g}{of_load} exceeds the largest {moment} {M * load:.6g}{of_load}"
+            f"{name} = {total:.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest {moment}"
             f" (at V = {V * speed:.6g}{of_speed})"
         )
 

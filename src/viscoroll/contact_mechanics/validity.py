@@ -99,7 +99,7 @@ class Steadiness(Assumption):
         array([ True,  True])
         """
         if free.u.size and not free.u.any():
-            return Assumption(None, None, "the assumption is not checked at rest: give a speed")
+            return Assumption(None, None, "the assumption is not checked at V = 0: give a speed")
         return cls._create(free.unsteadiness, free)
 
     @classmethod
@@ -273,13 +273,12 @@ def _describe_free(free: FreeRolling) -> str:
     value = float(free.unsteadiness)
     most = free.reach(STEADY_LIMIT)
     whole = free.distance()
-    text = f"unsteadiness {value:.2g} (up to {STEADY_LIMIT} is allowed): "
+    text = f"unsteadiness (relative error of V) {value:.2g}, up to {STEADY_LIMIT} is allowed: "
     if value > STEADY_LIMIT:
         return text + (
             "too slow for the quasi-steady assumption of a motion (contact states and constant "
-            "speeds are valid, their "
-            "stability is not); "
-            f"the error of V is below 10 % above {most.speed:.2g}{speed}"
+            "speeds are valid, their stability is not); the error of V is below 10 % above "
+            f"{most.speed:.2g}{speed}"
         )
     if not np.isfinite(whole):
         return text + "an elastic cylinder never stops"
@@ -310,7 +309,7 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
         it is not known, which the sentence then leaves out.
     Returns a str without a full stop.
     """
-    text = f"unsteadiness up to {most:.2g} (up to {STEADY_LIMIT} is allowed): "
+    text = f"unsteadiness (relative error of V) up to {most:.2g}, {STEADY_LIMIT} is allowed: "
     text += "the error of V is below 10 % "
     if most <= STEADY_LIMIT:
         return text + "throughout"
@@ -375,11 +374,10 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     )
     theta = half / cover.thinnest
     sentence = (
-        f"h/l0 = {thickness:.3g}: half the contact length is up to "
-        f"{largest(theta):.2g} times the "
-        f"thickness; up to {np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is "
-        "allowed, where the contact "
-        "sticks in front and slips behind (beyond: method='coupled')"
+        f"the layer is {thickness:.3g} times as thick as the contact at rest is long; half the "
+        f"contact length is up to {largest(theta):.2g} times the thickness, up to "
+        f"{np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is allowed, where the "
+        "contact sticks in front and slips behind (beyond that, use method='coupled')"
     )
     return Assumption(holds, theta, sentence)
 
@@ -423,8 +421,8 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     most = largest(value)
     beyond = (
-        f" where the value is at most 1; it is up to {most:.2g}: above 1 both ends slip, and "
-        "the law does not hold: use method='coupled'"
+        f" where the value of this line is at most 1; here it is up to {most:.2g}, both ends slip, "
+        "and the law does not hold: use method='coupled'"
     )
     errors = (
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
@@ -432,11 +430,11 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     )
     if scene.tabulated:
         sentence = (
-            "shear acts back on the pressure: states with traction are taken from a table of the "
-            f"coupled solution; with coupled=False {errors}"
+            "shear acts back on the pressure: states with traction are from a table of both solved "
+            f"together; with coupled=False {errors}"
         )
         return Assumption(np.full(np.shape(value), True)[()], value, sentence)
-    sentence = f"shear acts back on the pressure: compared with method='coupled' {errors}"
+    sentence = f"shear acts back on the pressure; compared with method='coupled' {errors}"
     return Assumption(value <= 1.0, value, sentence)
 
 

@@ -173,7 +173,7 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
     if not has_no_unit(value):
         plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
-            sentence = f"{name} is a masked array: give {name}.filled() or {name}.compressed()"
+            sentence = f"{name} is a masked array: give {name}.filled(VALUE) or {name}.compressed()"
             raise ParameterError(name, "a masked array", "plain", sentence)
     try:
         array = np.asarray(plain)
@@ -204,7 +204,7 @@ def _first_wrong(array: Floats, wrong: Booleans) -> str:
     if array.size == 1:
         return str(array.item())
     first = tuple(map(int, np.argwhere(wrong)[0]))
-    index = f"at row {first[0]}" if array.ndim == 1 else f"at {first}"
+    index = f"at index {first[0] if array.ndim == 1 else first}"
     more = int(np.count_nonzero(wrong)) - 1
     return f"{array[first]} {index}" + (f", and {more} more" if more else "")
 
@@ -261,7 +261,7 @@ def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     except ValueError:
         each = {name: getattr(array, "shape", ()) for name, array in arrays.items()}
         found = ", ".join(f"{name} {shape}" for name, shape in each.items() if shape)
-        allowed = "equal, or broadcast as in numpy"
+        allowed = "equal, or broadcast as in numpy, for example (3, 1) with (4,)"
         raise ParameterError(
             "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"
         ) from None
@@ -340,7 +340,7 @@ def check_text(name: str, value: Any) -> None:
     if not (
         isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()
     ):
-        raise ParameterError(name, describe_value(value), "a text that UTF-8 holds, without \\0")
+        raise ParameterError(name, describe_value(value), "a text in UTF-8 without null characters")
 
 
 def check_choice(name: str, value: Any, *allowed: str) -> None:

@@ -70,7 +70,7 @@ class Schedule:
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
-            allowed = "(k,) for both, or (n, k) for n motions"
+            allowed = "(k,) for k times, or (n, k) with a row for each of n motions"
             raise ParameterError("shapes of a Schedule", shapes, allowed)
         for wrong, found, allowed in (
             (times[..., 1:] < times[..., :-1], "fall after {:.6g}", "in ascending order"),
@@ -132,7 +132,7 @@ class Feedback:
             _check_field(self, name, -np.inf)
             if np.ndim(gain := getattr(self, name)) > 1:
                 raise shape_error(
-                    name, np.shape(gain), "a number, or an array (n,) with one for each motion"
+                    name, np.shape(gain), "one gain, or an array (n,) with a gain for each motion"
                 )
 
     @property
@@ -226,9 +226,8 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
     except TypeError:
         sentence = (
             f"{name} must be a function of t alone, but this function has the parameters "
-            f"{parameters}: for feedback "
-            "of the speeds give vr.Feedback; with another controller call vr.law in an integrator "
-            "of your own"
+            f"{parameters}: for feedback of the speeds give vr.Feedback; with another controller "
+            "call vr.law in an integrator of your own"
         )
         raise ParameterError(name, function, "a function of t", sentence) from None
 
@@ -518,7 +517,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
     if plain or (arrays and series):
         names = ", ".join((*labelled, *plain))
         raise ParameterError(
-            names, "some labelled", "alike", f"{names}: give labels to all of them or to none"
+            names, "mixed", "alike", f"{names} differ: give all as xarray, pandas or plain arrays"
         )
     values, labels = _from_xarray(arrays) if arrays else _from_pandas(series)
     return given | values, labels
@@ -554,7 +553,7 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
             names,
             "unlike coordinates",
             "aligned",
-            f"{names} have unlike coordinates: align them first, by xarray.align",
+            f"{names} have different coordinates: align them first, by xarray.align",
         ) from error
     like = next(iter(whole.values())).drop_attrs()
     # from the last array to the first, whose coordinates take the place of later ones
@@ -588,7 +587,7 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     index = first.index
     if not all(index.equals(other.index) for other in others):
         names = " and ".join(series)
-        sentence = f"{names} have different indexes: align them first, by reindex_like"
+        sentence = f"{names} have different indexes: align them first, by reindex_like of pandas"
         raise ParameterError(names, "unlike indices", "of one index", sentence)
     # the levels of the index as columns; the last column has the values, with a name that no
     # level has, since reset_index refuses a second column of one name

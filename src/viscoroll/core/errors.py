@@ -184,7 +184,7 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     sentence = (
         f"{first} and {second} are both given: give one of the two"
         if both
-        else f"give {first} or {second}"
+        else f"neither {first} nor {second} is given: give one of the two"
     )
     return ParameterError(
         f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence
@@ -388,18 +388,16 @@ class MotionStatus(IntEnum):
 _MESSAGES = (
     "reached the last output time",
     "|V| and R |omega| fell below the rest threshold",
-    "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed "
-    "grows without bound,"
-    " loosen rtol",
-    "the step size fell to rounding level: the motion changes faster than doubles resolve time "
-    "there, since a gain,"
-    " drag, speed or friction is extreme, or rtol too tight",
-    "V and omega were both 0, where the motion is not unique: with mu > 2 kappa the cylinder can "
-    "start in two"
-    " directions",
-    "too slow for the unsteady correction: the added mass gamma N reached 1 + j, or -(1 + j)/2",
-    "too slow to leave the indentation of the standstill, which would take seven tenths of the "
-    "kinetic energy",
+    "max_steps steps did not suffice up to the last output time: raise max_steps, shorten the "
+    "motion, or give a larger rtol (of no use where a speed grows without bound)",
+    "the time steps became too short for double precision, since the motion changes too fast: make "
+    "an extreme gain, drag, speed or friction smaller, or rtol larger",
+    "V and omega were both 0, from where the motion is not unique: as mu is above 2 kappa (2 R "
+    "divided by the contact length at rest), the cylinder can start in two directions",
+    "the cylinder became too slow for unsteady=True: the added mass N of speed changes became as "
+    "large as the inertia (gamma N reached 1 + j, or -(1 + j)/2)",
+    "the cylinder is too slow to leave the indentation of its standstill (rested), which would "
+    "take more than seven tenths of the kinetic energy",
 )
 
 

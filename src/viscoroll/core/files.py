@@ -115,7 +115,7 @@ def replace_file(path: FilePath) -> Iterator[Path]:
                 (target.is_dir(), "a directory"),
                 (target.exists() and not target.is_file(), "not a regular file"),
                 (target.exists() and not os.access(target, os.W_OK), "read-only"),
-                (not target.parent.is_dir(), "in a folder that does not exist: make it first"),
+                (not target.parent.is_dir(), "in a folder that does not exist; make it first"),
             ):
                 if wrong:
                     raise FileError(path, f"cannot be written: it is {problem}")
@@ -246,7 +246,7 @@ def read_sealed(path: FilePath, max_bytes: int, kind: str, remedy: str) -> bytes
         content = file.read_bytes()
     if content.startswith(b"CDF") and kind != "law or grid":
         problem = "is netCDF-3, which viscoroll writes for other programs and does not read"
-        raise FileError(path, f"{problem}: it must be a {kind}, with the suffix .nc")
+        raise FileError(path, f"{problem}: give a {kind} that was written with the suffix .nc")
     if seal_matches(content) is False:
         raise FileError(
             path, f"is damaged: its bytes differ from the checksum at their end; {remedy}"
@@ -377,7 +377,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         problem = "has an integer of more than 64 bits: write it with a decimal point"
         raise FileError(path, problem) from error
     except UnicodeDecodeError as error:
-        raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
+        raise FileError(path, f"is not in UTF-8 (byte {error.start}): save it in UTF-8") from error
     except (
         ValueError,
         RecursionError,
@@ -394,7 +394,7 @@ def _finite(path: FilePath, text: str) -> float:
     Raises FileError for a number beyond the doubles, as 1e400, which Python reads as infinite.
     """
     if math.isinf(number := float(text)) and "inf" not in text:
-        raise FileError(path, f"has {text}, beyond 1.8e308: write inf if that is meant")
+        raise FileError(path, f"has the number {text}, beyond 1.8e308: write inf if that is meant")
     return number
 
 
@@ -409,7 +409,7 @@ def _advise_on_comma(path: Path, problem: str) -> str:
     if number := re.search(r"line (\d+)", problem):
         line = path.read_text(encoding="utf-8-sig").split("\n")[int(number[1]) - 1]
         if comma := _DECIMAL_COMMA.search(_LIST.sub("", line)):
-            return f": {comma[1]} must have a decimal point"
+            return f"; {comma[1]} must have a decimal point"
     return ""
 
 
@@ -456,7 +456,7 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
         elif words and (choices := _list_choices(kind, words)):
             problem = f"{found}: must be one of {choices}"
         elif problem == "Number out of range":
-            problem = f"{found}: is larger than a double can be, 1.8e+308"
+            problem = f"{found}: must be at most 1.8e308, the largest number that is allowed"
         elif words and not isinstance(value, dict):
             problem = f"{found}: {problem}"
         raise section_error(

@@ -408,7 +408,7 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
         # The full name of the unit does not depend on the default format of its registry.
         return value.magnitude, format(unit, "D") if hasattr(unit, "dimensionality") else str(unit)
     if hasattr(value, "columns"):
-        raise described_error(name, "is a table", "a column of it")
+        raise described_error(name, "is a table", "one column of it")
     if hasattr(value, "dtype") and (hasattr(value, "attrs") or hasattr(value, "to_numpy")):
         return _split_labelled(name, value)
     if (duration := _to_seconds(name, value)) is not None:
@@ -595,6 +595,6 @@ def _to_seconds(name: str, value: Any) -> Any:
         raise ParameterError(
             name,
             describe_value(value),
-            "a duration in weeks, days, hours, seconds or parts of them",
+            "a duration in weeks, days, hours, minutes, seconds or fractions of a second",
         )
     return durations / np.timedelta64(1, "s")

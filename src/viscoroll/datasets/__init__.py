@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike
 from pathlib import Path
 
-from ..core import FileError, ParameterError, as_file_error, as_path, write_bytes
+from ..core import FileError, as_file_error, as_path, check_choice, write_bytes
 
 __all__ = ["copy_files", "path"]
 
@@ -44,9 +44,7 @@ def path(name: str) -> Path:
     >>> vr.datasets.path("dma.csv").name
     'dma.csv'
     """
-    names = _names()
-    if name not in names:
-        raise ParameterError("name", repr(name), f"one of {', '.join(names)}")
+    check_choice("name", name, *_names())
     return _FOLDER / name
 
 

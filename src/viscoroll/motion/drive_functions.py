@@ -299,7 +299,7 @@ def _refuse_both(drive: Drive) -> None:
                 name,
                 value,
                 "left out",
-                f"{name} is given together with {speed}=: leave it out, {why}",
+                f"{name} is given together with {speed}=: leave {name} out, as {why}",
             )
 
 
@@ -329,7 +329,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
         broadcast_shape(**{f"{name}0": given, name: start if start.size > 1 else np.empty(())})
         differ = np.abs(given - start) > _START * scale
         if differ.any():
-            text = f"{name}0 = {{}}: must be None, or {{}}, the prescribed {name} at t = 0"
+            text = f"{name}0 = {{}}: must be left out, or {{}}, the prescribed {name} at t = 0"
             n = int(differ.argmax())
             numbers = np.stack(np.broadcast_arrays(given, start))[:, differ][:, 0]
             raise dimensionless_error(f"{name}0", text, name, *numbers, motion=n)
@@ -374,8 +374,8 @@ def refuse_rest(rest: Any, functions: DriveFunctions) -> None:
     if functions.acts_at_end:
         sentence = (
             f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
-            "the motion: leave rest out, or let the load end earlier (when a brake stops the "
-            "cylinder is in switches of a Motion)"
+            "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
+            "time at which a brake stops the cylinder)"
         )
         raise ParameterError("rest", rest, "None", sentence)
 

@@ -376,8 +376,8 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
         if sampled.taken - sampled.times.size > MOST or (cut is None and short):
             text = (
                 f"{sampled.name} is a function that piecewise polynomials cannot approximate near "
-                f"t = {{}} ({sampled.taken} values of it were taken): must be smooth except for "
-                "jumps and corners; or give a Schedule"
+                f"t = {{}} (after {sampled.taken} values of it): must be smooth except for "
+                "jumps and corners, or be given as a Schedule"
             )
             raise dimensionless_error(sampled.name, text, "t", start)
         # at a cut the parts end and begin at neighbouring doubles, else both in the middle; the

@@ -273,11 +273,13 @@ class Ensemble(RollResult):
                 )
                 text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
                 rows.append(SummaryRow(name, text, self._unit(name)))
-        rows.append(SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
+        rows.append(
+            SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()} motions")
+        )
         if self.flow.any():
             rows.append(
                 SummaryRow(
-                    "by the flow map", f"{self.flow.sum()}, stated error {self.flow_error:.2g}"
+                    "by flow map", f"{self.flow.sum()} motions, stated error {self.flow_error:.2g}"
                 )
             )
         return f"Ensemble of {len(self)} motions", rows + ends

@@ -102,9 +102,9 @@ def solve_batch(
     free = not batch.problem.driven and scene.like_bodies and not scene.tabulated
     if method == "flow" and (scene.shape or not free):
         which = (
-            "motions have different scenes"
+            "motions differ in more than V0 and omega0"
             if free
-            else "motions are driven or unsteady, or bodies differ"
+            else "motions have a drive or unsteady=True, or the base is of another material"
         )
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None

@@ -60,7 +60,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     if falls.any():
         n = int(np.argmax(falls))
         pair = times[n : n + 2]
-        found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at rows {n}, {n + 1}"
+        found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at index {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
     return times
 

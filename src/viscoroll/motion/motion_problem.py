@@ -241,11 +241,11 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refuse_cover(scene, "N of M = M(V) + N dV/dt is not available: leave unsteady=True out")
+    refuse_cover(scene, "leave unsteady=True out, as the added mass N is not computed")
     if not scene.like_bodies:
         sentence = (
             "unsteady = True: motions with the added mass N are computed for two bodies of "
-            "one material only: leave unsteady=True out"
+            "one material only; leave unsteady=True out"
         )
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     return True
@@ -281,7 +281,7 @@ def _apply_standstill(
     if time == 0.0:
         return start.V0, start.omega0, False
     refuse_cover(
-        scene, "the energy loss of a start after a standstill is not available: leave rested out"
+        scene, "leave rested out, as the loss of a start after a standstill is not computed"
     )
     V = np.asarray(start.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
@@ -294,7 +294,7 @@ def _apply_standstill(
     )
     if why:
         sentence = (
-            f"rested is given, but {why}: leave rested out, the loss of the start is not known"
+            f"rested is given, but {why}: leave rested out, as the loss of the start is not known"
         )
         raise ParameterError("rested", rested, "left out", sentence)
     # part of V; V = 0 with omega0 = 0 was refused above, and without a limit any other omega0 slips

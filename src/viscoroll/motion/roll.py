@@ -252,7 +252,7 @@ class Motion(RollResult):
         if capacity is not None:
             if not self.scale.si:
                 raise described_error(
-                    "capacity", "is given for a Scene", "left out: a Scene has no temperature"
+                    "capacity", "is given for a Scene", "left out, as a Scene has no temperature"
                 )
             capacity = check_number("capacity", capacity, unit=self.scale, above=0.0)
             report = report._replace(
@@ -593,8 +593,8 @@ def roll(
     warn_of_speeds(problem.roller, V0, motion.V)
     if not motion.success:
         text = (
-            f"roll: {motion.status.message}; outputs not reached are NaN, and .message gives "
-            "the last state"
+            f"roll: {motion.status.message}; outputs not reached are NaN, and the message of the "
+            "motion gives the last state"
         )
         warnings.warn(text, RuntimeWarning, stacklevel=2)
     return motion

@@ -136,7 +136,7 @@ def run_ensemble(
     >>> vr.runs.run_ensemble(run, "results.zarr", threads=1)  # the block is there
     0
     """
-    if progress != "lines":
+    if str(progress) != "lines":
         progress = check_bool("progress", progress)
     _require_run(run)
     store = Store(as_path(path).absolute(), run)
@@ -244,8 +244,10 @@ def _executor(
         finally:
             pool.shutdown(wait=not interrupted.is_set(), cancel_futures=True)
         return
-    if cluster != "local" and not _ADDRESS.fullmatch(cluster):
-        raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
+    if str(cluster) != "local" and not _ADDRESS.fullmatch(str(cluster)):
+        raise ParameterError(
+            "cluster", repr(cluster), "'local', or 'tcp://host:port' of a dask scheduler"
+        )
     distributed = import_extra("distributed", "cluster")
     try:
         with ExitStack() as stack:

@@ -378,10 +378,10 @@ def _no_extension(before: Run, run: Run) -> str:
     if n < before.settings.n:
         return f"and n must not be reduced: set n >= {before.settings.n}"
     if design == "latin":
-        return f"a Latin hypercube, whose strata depend on n: keep n = {before.settings.n}"
+        return f"a Latin hypercube, whose points depend on n: keep n = {before.settings.n}"
     if design == "sobol" and n & (n - 1):
         return (
-            "along Sobol's sequence, which is balanced only for a power of two: set n = "
+            "drawn by Sobol's sequence, which is even only for a power of two: set n = "
             f"{1 << n.bit_length()}"
         )
     if run.block != before.block:

@@ -66,7 +66,7 @@ class Verdict:
         """
         if self.ok:
             blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
-            return f"complete: {blocks} and the summaries match their SHA-256"
+            return f"complete: {blocks} and the summaries match their checksums (SHA-256)"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
         lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"] * bool(
             self.missing
@@ -105,7 +105,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
     ... )
     >>> print(vr.runs.verify("results.zarr"))
-    complete: 1 block and the summaries match their SHA-256
+    complete: 1 block and the summaries match their checksums (SHA-256)
     """
     root = as_path(path)
     start = start_of(path)
@@ -143,7 +143,7 @@ def start_of(path: str | PathLike[str]) -> Record:
     if start is None:
         raise FileError(
             path,
-            "is not a results store, or its start is damaged: repeat `viscoroll ensemble`",
+            "is not a results store, or a damaged one: repeat `viscoroll ensemble` with -o",
         )
     return start
 
@@ -234,7 +234,7 @@ class RunResults(Result):
         if not (self.path / MOTIONS).is_dir():
             raise FileError(
                 self.path,
-                'contains summaries but no motions: run it again with keep = "all" in [run]',
+                'contains summaries but no motions: repeat the run with keep = "all" in [run]',
             )
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 

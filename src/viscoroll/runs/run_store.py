@@ -360,7 +360,7 @@ class Store:
         others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
         if others:
             raise FileError(
-                root, f"is not a results store, it contains {', '.join(others[:3])}: {ADVICE}"
+                root, f"is no results store, as it has {', '.join(others[:3])}: give another folder"
             )
 
     def missing(self) -> Iterator[int]:
@@ -550,7 +550,7 @@ def locked(root: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise FileError(root, "another process is writing to it: wait until it has ended") from None
+        raise FileError(root, "another process writes here: wait until that process ends") from None
     except (OSError, NotImplementedError) as error:  # some network disks
         raise FileError(
             root,

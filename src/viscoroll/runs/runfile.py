@@ -338,7 +338,7 @@ def read_run(path: str | PathLike[str]) -> Run:
             "run",
             "method",
             "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, "
-            "and where scenes differ",
+            "and where inputs other than V0 and omega0 are uncertain",
         )
     _check_inputs(run)
     return run
@@ -506,8 +506,10 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
     for (a, b), value in pairs.items():
         problem = ""
         if unknown := [name for name in (a, b) if name not in random]:
-            allowed = f"must be one of the inputs with a distribution, {', '.join(random)}"
-            problem = f"{unknown[0]!r} has none: {allowed}{suggestion(unknown[0], random)}"
+            allowed = (
+                f"must be an input with a distribution ({', '.join(random) or 'there is none'})"
+            )
+            problem = f"{unknown[0]!r} is not random: {allowed}{suggestion(unknown[0], random)}"
         elif a == b or not is_real(value) or not -1.0 < value < 1.0:
             problem = (
                 f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"

@@ -143,7 +143,7 @@ def sobol_indices(
         )
         times = [f" at t = {t:g}" for t in run.t] if over else [""]
         refused += [
-            f"{name}{time}: {reason}" for time, reason in zip(times, reasons, strict=True) if reason
+            f"{name}{time} ({why})" for time, why in zip(times, reasons, strict=True) if why
         ]
         if not np.isfinite(indices).any():
             continue
@@ -155,7 +155,7 @@ def sobol_indices(
         raise ParameterError(
             "summaries",
             "; ".join(refused),
-            "quantities that each motion has and that differ: choose others, or a later t",
+            "quantities that every motion has and that vary: choose others, or a later t",
         )
     coordinates = {
         "t": ("t", run.t, column_attributes("t", run.si)),
@@ -198,7 +198,7 @@ def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
     for file, columns in inputs.joint.items():
         if len(columns) > 1:
             allowed = (
-                "distributions, or columns of a file each: Sobol indices are defined for "
+                "distributions, or columns of different files: Sobol indices are defined for "
                 "independent inputs only"
             )
             raise ParameterError(
@@ -302,7 +302,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     if missing := np.count_nonzero(~np.isfinite(values)):
         return found, f"{missing} of {values.size} motions have no value"
     if not values.std() > noise:
-        return found, "it varies by no more than rtol of its largest value"
+        return found, "varies by no more than the error of integration, which rtol limits"
     random = np.random.default_rng(seed)
     base = values.shape[1]
     resampled = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]

@@ -492,7 +492,7 @@ class _Reader:
         # scipy returns NaN for parameters out of range, and raises nothing
         if not np.isfinite(frozen.ppf(0.5)):
             raise self.fault(
-                number, f"scipy.stats.{name} does not allow these parameters, as scale <= 0"
+                number, f"scipy.stats.{name} does not allow these parameters (scale must be > 0)"
             )
         return frozen
 
@@ -533,11 +533,11 @@ class _Reader:
             problem = (
                 "the file does not exist"
                 if not path.exists()
-                else f"the file has no {column!r}"
+                else "the file has no column of this name"
                 if isinstance(error, KeyError)
                 else getattr(error, "problem", error)
                 if type(error) in (FileError, ParameterError, ValueError)
-                else f"the file is damaged, or no {path.suffix} file"
+                else f"the file is damaged, or is not a {path.suffix} file"
             )
             raise self.fault(number, f"{where}: {problem}") from error
         # one entry for each file, however it is spelt

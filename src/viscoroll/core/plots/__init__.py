@@ -248,7 +248,7 @@ def save(figure: Figure, path: FilePath) -> None:
     suffix = as_path(path).suffix
     if suffix.removeprefix(".").lower() not in formats:
         raise FileError(
-            path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}"
+            path, f"suffix {suffix!r} is no figure format: must be one of .{', .'.join(formats)}"
         )
     with replace_file(path) as temporary:
         figure.savefig(temporary)
@@ -384,7 +384,7 @@ def equilibria(data: Dataset) -> Figure:
         if name in data and np.ptp(_finite(data[name])) > 0.0
     )
     load = next(loads, "force")
-    figure, axes = new_figure("Steady rolling: stable (filled) and not (open)")
+    figure, axes = new_figure("Steady rolling: stable (filled) and unstable (open)")
     x, V, stable = (
         data[name].broadcast_like(data["V"]).values.ravel() for name in (load, "V", "stable")
     )
@@ -558,8 +558,8 @@ def draw(data: Dataset) -> Figure:
     for applies, figure in kinds:
         if applies:
             return figure(data)
-    found = ", ".join(f"{name}: {size}" for name, size in data.sizes.items()) or "a single state"
+    found = ", ".join(f"{size} of {name}" for name, size in data.sizes.items()) or "a single state"
     sentence = (
-        f"a plot needs several speeds or creepages: the result contains {found}; compute it at more"
+        f"a plot needs several speeds or creepages, but this result has {found}: compute it at more"
     )
     raise ParameterError("plot", found, "a result over an axis", sentence)
