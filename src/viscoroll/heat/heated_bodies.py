@@ -437,11 +437,12 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     slip_share = check_number("slip_share", slip_share, low=0.0, high=1.0)
     pair = roller.body_data and roller.body_data.pair
     if pair is None:
-        allowed = (
+        raise described_error(
+            "roller",
+            f"given to {call} has no Material",
             "a Cylinder(material=Material(..., shift=...)), as a Scene and a Cylinder by E, nu, "
-            "T_epsilon and T_sigma have no temperature"
+            "T_epsilon and T_sigma have no temperature",
         )
-        raise described_error("roller", f"given to {call} has no Material", allowed)
     bodies = (pair.cylinder, slip_share), (pair.half_space, 1.0 - slip_share)
     # all loss in rolling is that of the body that relaxes, if there is one alone
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
@@ -452,11 +453,12 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     if pair.like:  # each has half of both losses, at one temperature
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
-        allowed = (
-            "elastic, rigid or of the material of the cylinder; for two materials call "
-            "vr.pair_temperatures"
+        raise described_error(
+            "base",
+            "relaxes too",
+            "elastic, rigid or of the material of the cylinder; for two materials that relax call "
+            "vr.pair_temperatures",
         )
-        raise described_error("base", "relaxes too", allowed)
     return found[0]
 
 

@@ -269,9 +269,7 @@ def check_law(content: Content, path: Any) -> None:
         )
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
-        problem = (
-            f"has law_schema = {schema!s:.20}, but viscoroll {__version__} reads only {VERSION}"
-        )
+        problem = f"has law_schema = {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
         raise FileError(path, f"{problem}; {REMEDY}, or use the version that wrote it")
     for name in ("title", "source", "material")[: 2 if kind == AXIS else 3]:
         if not isinstance(attributes.get(name), str):
@@ -395,9 +393,7 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
         )
     if about.get("schema") != _SCHEMA:
         raise FileError(
-            path,
-            f"has the attribute schema = {about.get('schema')!r:.40}: must be {_SCHEMA!r}, as in a "
-            f"material of viscoroll {__version__}; {_REWRITE}",
+            path, f"has attribute schema = {about.get('schema')!r:.40}, not {_SCHEMA!r}; {_REWRITE}"
         )
     if seal_matches(Path(path).read_bytes()) is None:
         raise FileError(
