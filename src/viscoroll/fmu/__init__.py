@@ -359,8 +359,8 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
-        found = "a table of the coupled solution, which an FMU cannot contain"
-        allowed = "the Cylinder, whose FMU has the fast law; as C vr.tables.export writes the table"
+        found = "a table of pressure and shear solved together, which an FMU cannot contain"
+        allowed = "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table as C"
         sentence = f"the law that is given is {found}: must be {allowed}"
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)

@@ -452,7 +452,7 @@ def _reasons(
             else "but friction cannot carry the load there"
             if not known[at]
             else "where the transit frequency (speed divided by contact length) lies outside the "
-            "measured band of the material"
+            "frequencies at which the material was measured"
         )
         found[n] = f"loss and heat given off are equal at {zeros.theta[at]:.5g} °C, {where}"
     return found

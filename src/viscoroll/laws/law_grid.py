@@ -332,7 +332,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
             Q,
             np.abs(Q.values) > limit * (1.0 + _ROUNDING),
             path,
-            f"at most {limit:.6g} in size, the friction mu P",
+            f"at most {limit:.6g} in size, the friction limit mu P",
         )
         noise = _NOISE * np.abs(Q.values).max()
         # + 0 Q: in the shape of Q

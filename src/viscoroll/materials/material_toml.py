@@ -269,7 +269,9 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
         if temperature is None:
             return material
         if material.shift is None:
-            problem = f"temperature = {temperature:g}: needs wlf or arrhenius too, the shift to it"
+            problem = (
+                f"temperature = {temperature:g}: needs wlf or arrhenius too, to shift the times"
+            )
             raise section_error(path, name, "temperature", problem)
         return material.at(temperature)
 

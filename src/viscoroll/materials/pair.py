@@ -288,7 +288,7 @@ class Pair:
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
             found = f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}"
             allowed = f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
-            allowed += "contact length at rest of half-spaces); make it with this load and R"
+            allowed += "contact length at rest of half-spaces); make the law with this load and R"
             raise described_error("material", found, allowed)
 
     def refuse_coupled_ratios(self, law: Prony | Bodies | Cover, limit: float) -> None:
@@ -300,7 +300,7 @@ class Pair:
         if type(law) is Bodies and law.poisson is None and self.most_coupled > limit:
             raise described_error(
                 "nu",
-                "is an array, each value of which needs a table of the coupled solution",
+                "is an array, and each value needs a table of pressure and shear solved together",
                 "one number; or give coupled=False, for the fast law without a table",
             )
 

@@ -403,7 +403,7 @@ def build(
     for name, given in {"V": V, "delta": delta}.items():
         if given is None:
             raise ParameterError(
-                name, None, "a list, as vr.tables.spread or vr.tables.creep_nodes makes it"
+                name, None, "a list of values, as vr.tables.spread or creep_nodes makes it"
             )
     what = roller_of(what, alpha)
     si = isinstance(what, Cylinder)
