@@ -593,6 +593,6 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
         # at a jump the value after it
         return lambda time: float(np.interp(time, V.times, V.values)), V.times
     if callable(V):
-        return lambda time: check_number("V", V(time), unit=scale), np.empty(0)
+        return lambda time: check_number(f"V({time:g})", V(time), unit="m s-1"), np.empty(0)
     speed = check_number("V", V, unit=scale)
     return lambda time: speed, np.empty(0)

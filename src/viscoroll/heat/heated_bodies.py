@@ -232,7 +232,9 @@ def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
     unknown = np.flatnonzero(np.isnan(a_T))
     if unknown.size == theta.size:
         raise described_error(
-            "shift", "is not defined at the temperature of the material", "a number > 0 there"
+            "shift",
+            "is not defined at the temperature of the material",
+            "a function that returns a number > 0 there",
         )
     own = np.nanargmin(np.abs(np.log(a_T)))  # at the reference a_T is 1
     first = unknown[unknown < own].max(initial=-1) + 1

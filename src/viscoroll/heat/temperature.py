@@ -449,7 +449,7 @@ def _reasons(
         where = (
             f"above {states.curve.high:g}, up to which the shift of the material is defined"
             if not np.isfinite(rows["a_T"][at])
-            else "but friction cannot carry the load there"
+            else "but friction is too small there for the force or torque"
             if not known[at]
             else "where the transit frequency (speed divided by contact length) lies outside the "
             "frequencies at which the material was measured"

@@ -368,8 +368,8 @@ def check_celsius(name: str, temperature: Any) -> float:
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
         low, high = USUAL_RANGE
         text = (
-            f"{name} is outside {low:g} to {high:g}: the unit is degrees Celsius, and this number "
-            "looks like kelvin"
+            f"{name} is outside {low:g} to {high:g}: the unit is degrees Celsius, and this "
+            "looks like kelvin, or like a value that was converted twice"
         )
         warn_of_model(text)
     return found

@@ -470,7 +470,7 @@ class Interpolant:
             raise ParameterError(
                 "coordinates",
                 ", ".join(points) or "none",
-                f"{wanted or 'none'}, on which {', '.join(names)} depend (this grid has the axes "
+                f"{wanted or 'none'}, as needed for {', '.join(names)} (this grid has the axes "
                 f"{', '.join(self._axes)})",
             )
         axes = {name: self._table[name] for name in points}
