@@ -65,7 +65,7 @@ CONTACT = each(
             {"roller": MANY_SCENES, "method": "coupled"},
             {"roller": THREE, "method": "coupled"},
         ],
-        "thickness/l0 = 0.04: must be at least 0.0625 in a call with several values": {
+        "thickness/l0 = 0.04: must be at least 0.0625 in a call with several thick": {
             "roller": THIN.replace(material=vr.Cover(1.0, nu=0.0, thickness=[0.04, 0.1]))
         },
         "thickness/l0 = 0.005: must be larger: half the contact at rest": {

@@ -283,8 +283,8 @@ REFUSED = [
                 "scale = 0.2",
                 "scale = 0.6",
             ),
-            "[material.prony] E_1: the Prony series of the cover, the cylinder, has several "
-            "values: must be one for all cylinders: thickness, load and R may differ, and "
+            "[material.prony] E_1: the Prony series of the cover (cylinder) has several "
+            "values: must be one for all cylinders (thickness, load and R may differ, and "
             "beside a rigid body E and nu": (
                 "on what is rigid",
                 "E = {",

@@ -117,7 +117,7 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
     ],
 )
 def test_bulk_terms_in_another_unit_than_shear_warn(make):
-    with pytest.warns(vr.ModelWarning, match=r"Poisson's ratio -?0.* below 0\.2"):
+    with pytest.warns(vr.ModelWarning, match=r"Poisson's ratio -?0.* less than 0\.2"):
         make()
 
 

@@ -321,7 +321,7 @@ def _material_of_law(path: Path) -> Material:
         content = tomllib.loads(read_law(path).attributes["material"])
     except tomllib.TOMLDecodeError as error:
         raise FileError(
-            path, f"is damaged or was edited, as its attribute material is not TOML; {REMEDY}"
+            path, f"is damaged or was edited: its attribute material is not TOML; {REMEDY}"
         ) from error
     if not content.keys() & set(SECTIONS):
         raise FileError(
