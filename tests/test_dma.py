@@ -221,7 +221,7 @@ def test_found_factors_are_a_shift_and_give_a_law():
     assert close(moved.T_ref, rubber.T_ref * wlf(-25.0), tol.DMA_SHIFT_BETWEEN)
     with pytest.raises(vr.ParameterError, match="at least 3"):
         vr.ShiftFactors(temperature=(0.0, 10.0), a_T=(9.0, 1.0), T0=10.0).wlf()
-    with pytest.warns(vr.ModelWarning, match="misses the factor found at"):
+    with pytest.warns(vr.ModelWarning, match="times the shift factor that was found at"):
         vr.ShiftFactors(temperature=(0.0, 10.0, 20.0), a_T=(100.0, 99.0, 1.0), T0=0.0).wlf()
 
 

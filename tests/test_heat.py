@@ -254,7 +254,7 @@ def test_conductance_of_film_and_cover():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: vr.presets.RUBBER_CYLINDER.temperature(1.0, **WARM), "a WLF, an Arrhenius"),
+        (lambda: vr.presets.RUBBER_CYLINDER.temperature(1.0, **WARM), "given to the Material"),
         (lambda: with_shift(lambda T: T + 300.0).temperature(1.0, **COLD), "rises at"),
         (lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD), "above ambient"),
         (lambda: vr.conductance(0.1, thickness=0.2), "below R"),
@@ -289,12 +289,11 @@ def test_beyond_the_ranges_is_named():
     factors.range = (-40.0, 60.0)
     found = with_shift(factors).temperature(5.0, **MILD)
     assert not found.count
-    assert found.reason.startswith("the only balance is at ")
-    assert "above 60, the highest temperature of the shift" in found.reason
+    assert "°C, above 60, up to which the shift of the material is defined" in found.reason
     measured = with_shift(WLF, measured=vr.Measured(1e-3, 1e-2, 0.0))
     marked = measured.temperature(5.0, **MILD)
     assert not marked.measured[0]
-    assert marked.reason.startswith("the only balance is at 87.82")
+    assert marked.reason.startswith("loss and heat given off are equal at 87.82")
 
 
 # --- run files ---

@@ -64,14 +64,13 @@ REFUSED = [
     *each(
         of_materials,
         {
-            "file.toml | line 2 | E = inf | finite for "
-            "a viscoelastic material": RUBBER_FILE.replace("2.3e5", "inf"),
-            "file.toml: line 1: [material] T_epsilon and T_sigma (s) must be given together, "
-            "and without T_ref": "[material]\nE = 1\nnu = 0.5\nT_epsilon = 1.0",
-            "file.toml: line 6: [material] temperature = 30: "
-            "wlf or arrhenius is needed too": RUBBER_FILE + "temperature = 30.0",
-            "file.toml | temperature = -40.0 | where the WLF shift is infinite, in degrees "
-            "Celsius": RUBBER_FILE + "wlf = { T0 = 20.0 }\ntemperature = -40.0",
+            "file.toml | line 2 | E = inf | for a viscoelastic": RUBBER_FILE.replace(
+                "2.3e5", "inf"
+            ),
+            "line 1: [material] T_epsilon and": "[material]\nE = 1\nnu = 0.5\nT_epsilon = 1.0",
+            "line 6: [material] temperature = 30: needs wlf or": RUBBER_FILE + "temperature = 30.0",
+            "file.toml | temperature = -40.0 | °C, where the WLF shift is infinite": RUBBER_FILE
+            + "wlf = { T0 = 20.0 }\ntemperature = -40.0",
             "file.toml | line 6: [material.arrhenius] needs energy": RUBBER_FILE
             + "arrhenius = { T0 = 20.0 }",
             "file.toml | section [material]": "material = 3",
@@ -86,16 +85,14 @@ REFUSED = [
             "given.nc | V = | shape (0,) | must be real numbers, at least one": OTHER_GRID.isel(
                 V=slice(0)
             ),
-            "given.nc: is not a grid of a law: variable 'M' is missing: must be given over "
-            "V": OTHER_GRID.drop_vars("M"),
+            "given.nc: is not a grid of a law, since it has neither M": OTHER_GRID.drop_vars("M"),
             "given.nc | attribute units of Q = N m2 | N/m": OTHER_GRID.assign(
                 Q=OTHER_GRID.Q.assign_attrs(units="N m2")
             ),
-            "units of V = missing | m/s, or 1 of a grid without": OTHER_GRID.assign_coords(
+            "units of V = missing | m/s or a multiple of it, or 1 of a": OTHER_GRID.assign_coords(
                 V=OTHER_GRID.V.drop_attrs()
             ),
-            "given.nc: is not a grid of a law: V must increase strictly, over at least two "
-            "nodes": OTHER_GRID.isel(V=[0]),
+            "is not a grid of a law, since V does not increase over two": OTHER_GRID.isel(V=[0]),
         },
         vr.FileError,
     ),
@@ -137,7 +134,7 @@ REFUSED = [
             "line 2: [start] V0 is missing: must be a number": lambda: read_run(
                 file('preset = "paper-section-5"\n[start]\nomega0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
             ),
-            "given.nc | law schema 2, but viscoroll": lambda: vr.load_law(
+            "given.nc | law_schema = 2, but viscoroll": lambda: vr.load_law(
                 netcdf(law_file().assign_attrs(law_schema=2))
             ),
             "given.nc | its numbers do not have the checksum": lambda: vr.load_law(
@@ -150,7 +147,7 @@ REFUSED = [
                     of_materials(OF_LAW),
                 ],
             ],
-            "attribute material is missing; write it again by vr.tables.save": [
+            "without attribute material; write the file again by vr.tables.save": [
                 lambda: vr.load_law(netcdf(law_file(), without="material")),
                 lambda: [netcdf(law_file(), without="material"), of_materials(OF_LAW)],
             ],
@@ -160,31 +157,32 @@ REFUSED = [
             "(it has no attribute viscoroll_table = 'grid'): vr.tables.build": lambda: (
                 vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc")
             ),
-            "given.nc: is not a material file: it is a grid, for vr.load_law and "
-            "vr.tables.interpolate": lambda: vr.Material.from_netcdf(netcdf(grid())),
+            "given.nc: is a grid of a law, not a material: read it by vr": lambda: (
+                vr.Material.from_netcdf(netcdf(grid()))
+            ),
             "coordinate 'alpha' must be > 0 and increase strictly": lambda: vr.load_law(
                 netcdf(OTHER_GRID.expand_dims(alpha=[3.0, 2.0])), alpha=2.5
             ),
             "is damaged": lambda: vr.load_law(
                 netcdf(vr.tables.law(PAPER.alpha).assign(lam=("row", ["a", "b"])))
             ),
-            "is incomplete: 'nu' is missing; write it again by Material.to_netcdf": lambda: (
+            "is incomplete, as 'nu' is missing; write the file again by Material": lambda: (
                 of_material(SOFT_DATA.drop_vars("nu"))
             ),
             "given = 'both': must be relaxation or creep": lambda: of_material(
                 SOFT_DATA.assign_attrs(given="both")
             ),
-            "has a wrong value: nu = 0.7: must be in (-1, 0.5]": lambda: of_material(
+            "has a wrong value (nu = 0.7: must be in (-1, 0.5])": lambda: of_material(
                 SOFT_DATA.assign(nu=0.7)
             ),
-            "is not a material of viscoroll": lambda: of_material(
+            "attribute schema = 'other', not 'viscoroll material 1'": lambda: of_material(
                 SOFT_DATA.assign_attrs(schema="other")
             ),
             "given.nc: is not a netCDF-4 (HDF5) file": [
                 lambda: vr.Material.from_netcdf(file("E = 1", "given.nc")),
                 lambda: vr.load_law(file("E = 1", "given.nc")),
             ],
-            "line 2 | law of a pair of materials: file must name": lambda: [
+            "line 2 | law of a pair of materials: it must be that of one": lambda: [
                 netcdf(vr.tables.law(SOFT, STEEL)),
                 read_roller(file('[material]\nfile = "given.nc"\n' + ROLLER_FILE)),
             ],
@@ -297,8 +295,8 @@ REFUSED = [
                 "scale = 0.2",
                 "scale = 0.6",
             ),
-            "[material.prony] E_1: the Prony series of the cover, the cylinder, has several "
-            "values: must be one for all cylinders: thickness, load and R may differ, and "
+            "[material.prony] E_1: the Prony series of the cover (cylinder) has several "
+            "values: must be one for all cylinders (thickness, load and R may differ, and "
             "beside a rigid body E and nu": (
                 "on what is rigid",
                 "E = {",

@@ -316,9 +316,8 @@ SHOWN = {
     "--version": f"viscoroll {vr.__version__}",
     "material fit rpm.csv --units frequency=rpm": "omega 6.283 to 25.13 rad/s",
     "doctor": "viscoroll | threads | cache | Q =",
-    "material show tread.toml": "[material] tread | E                 3e+06 Pa, of long times "
-    "|   instantaneous     7.5e+06 Pa",
-    "material show warm.toml": "T_ref             0.00295",
+    "material show tread.toml": "[material] tread | E    3e+06 Pa | instantaneous modulus  7.5e+06",
+    "material show warm.toml": "unit of time T_ref     0.00295",
     "validity rubber-roller --V 5 --omega 4.99": "steady         yes | small_contact",
     "validity PAPER --V 1.5": "steady         no",
     "steady PAPER --force 0.12": "load 0: force + torque = 0.12 exceeds",

@@ -411,7 +411,7 @@ def test_what_a_mode_allows(built, name, kind, mode):
             elif call is not None:
                 with pytest.raises(fmpy.fmi1.FMICallException):
                     call()
-                assert f"mode is {mode}" in one.said[-1], called
+                assert f"in the mode {mode}" in one.said[-1], called
                 if mode != "terminated":
                     call_of(one, "drive_force")()  # goes on
 
@@ -444,7 +444,9 @@ def test_a_state_has_its_mode_and_initialization_has_the_speeds_of_the_start(bui
         one.fmu.exitInitializationMode()
         state = one.fmu.getFMUState()
         one.fmu.terminate()
-        one.refuses("doStep: mode is terminated: must be step", one.step, 0.0, 0.1)
+        one.refuses(
+            "doStep is refused in the mode terminated: the mode must be step", one.step, 0.0, 0.1
+        )
         one.fmu.setFMUState(state)
         one.step(0.0, 0.1)
         one.fmu.freeFMUState(state)
@@ -479,7 +481,7 @@ def test_what_is_out_of_range_is_refused_in_words(built, name):
         for given, said in (
             ({"R": -1.0}, "R = -1: must be > 0"),
             ({"v": np.nan}, "v = nan: must be finite"),
-            ({"v": 1e308, "load": 2e3}, "must be finite: an input or a parameter is too large"),
+            ({"v": 1e308, "load": 2e3}, "must be finite; an input or a parameter is too large"),
         ):
             element.set(**given)
             element.refuses(said, element.get, "force")
@@ -520,8 +522,8 @@ def test_counts_and_times_that_cannot_be_are_refused(built, name):
     [
         ("alike", "Roller", {"guid": "{0}"}, "token: must be {"),
         ("unlike", "Roller", {"guid": "{0}"}, "token: must be {"),
-        ("alike", "ContactElement", {}, "must be model exchange"),
-        ("unlike", "ContactElement", {}, "must be model exchange"),
+        ("alike", "ContactElement", {}, "use model exchange"),
+        ("unlike", "ContactElement", {}, "use model exchange"),
         ("unlike", "Roller", {"event_mode_used": True}, "eventModeUsed: must be false"),
     ],
 )

@@ -59,7 +59,7 @@ REFUSED = [
             "source = 3": lambda: vr.Measured(1.0, 2.0, 0.1, 3),
             "T_ref = [1.0, 2.0]": lambda: vr.Material(E=1e6, nu=0.4, T_ref=[1.0, 2.0]),
             "material = rigid": lambda: vr.Material.rigid().plot(),
-            "G has shape (0,) and tau has shape (1,): must be lists of one length": lambda: (
+            "G has shape (0,) and tau has shape (1,): must be lists of the same length": lambda: (
                 vr.Material.comsol(1e6, 0.4, [], [1.0])
             ),
             "G has shape (): must be a list": lambda: vr.Material.comsol(1e6, 0.4, 1.0, 1.0),
@@ -114,11 +114,10 @@ REFUSED = [
                     run, {name: [value] * 3 for name, value in run.inputs.medians.items()}, 2
                 )
             )(read_run(vr.datasets.path("run.toml"))),
-            "temperature = -31.6 | > T0 - C2 = -31.6, where the WLF shift is infinite": lambda: (
+            "temperature = -31.6 | above T0 - C2 = -31.6 °C, where the WLF shift": lambda: (
                 ROLLER.material.at(-31.6, shift=vr.WLF(T0=20.0))
             ),
-            "sum of k = 1: must be below 1: otherwise the "
-            "long-time modulus is not positive": lambda: vr.Material.abaqus(
+            "sum of k = 1: must be below 1, since 1 minus this sum is": lambda: vr.Material.abaqus(
                 1e7, 0.49, [0.2], [0.1], k=[1.0]
             ),
             "measured | a vr.Measured": lambda: vr.Material.elastic(1e6, 0.5, measured=(1.0, 2.0)),
@@ -148,13 +147,13 @@ REFUSED = [
             "series | a Prony series of one material": lambda: vr.Cover(
                 MANY, nu=0.5, thickness=1.0
             ),
-            "nu has shape (2,) | a number, or one for each thickness": lambda: vr.Cover(
+            "nu has shape (2,) | a number, or a list, one for each thickness": lambda: vr.Cover(
                 SERIES, nu=[0.3, 0.4], thickness=1.0
             ),
-            "thickness has shape (2, 1): must be a number, or one for each cover, (n,)": lambda: (
+            "thickness has shape (2, 1): must be a number, or a list, one for each cover": lambda: (
                 vr.Cover(SERIES, nu=0.5, thickness=[[1.0], [2.0]])
             ),
-            "a file name that is a valid C identifier, for example rubber.h": lambda: (
+            "a name in C (letters, digits, _; no digit first) with .h, as rubber.h": lambda: (
                 vr.tables.export(vr.tables.law(11.0), "my-rubber.h")
             ),
             "'V': ..., 'omega': ...": lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1),
@@ -174,9 +173,8 @@ REFUSED = [
             "left out | given.nc is the law of one material": lambda: vr.load_law(
                 netcdf(law_file()), 11.0
             ),
-            "alpha = None: must be in [1, 2], the range of | given.nc (`viscoroll tables law "
-            "--alpha LOW:HIGH` writes another range)": lambda: vr.load_law(
-                netcdf(vr.tables.law(alpha=(1, 2)))
+            "alpha = None: must be a number in [1, 2], as in | --alpha LOW:HIGH": lambda: (
+                vr.load_law(netcdf(vr.tables.law(alpha=(1, 2))))
             ),
             "alpha | must be": lambda: vr.load_law(netcdf(grid())),
             "alpha = nan: must be": lambda: vr.load_law(netcdf(grid()), alpha=nan),
@@ -189,12 +187,13 @@ REFUSED = [
             "temperature is an array of shape (1, 2), but a material has one temperature": lambda: (
                 SOFT.at([[20.0, 1.0]], vr.WLF(T0=20.0))
             ),
-            "prony | a Prony series": lambda: vr.Material(1000000.0, 0.5, MANY),
+            "prony | one Prony series": lambda: vr.Material(1000000.0, 0.5, MANY),
             "high = 1.0 | >= low = 2": lambda: vr.Measured(2.0, 1.0, 0.0),
+            "M_error is not in pairs": lambda: vr.Measured(1.0, 2.0, 0.0, M_error=1.0),
             "rows (g_i, k_i, tau_i) | (1, 2)": lambda: vr.Material.abaqus(
                 10000000.0, 0.49, [[0.2, 0.1]]
             ),
-            "temperature = -31.599 | cannot be represented in double precision": lambda: vr.WLF(
+            "temperature = -31.599 | nearer to T0 = 20.0 | beyond double precision": lambda: vr.WLF(
                 T0=20.0
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
@@ -305,7 +304,7 @@ REFUSED = [
         vr.Prony,
         {
             "E (1, 2), tau (3,) | broadcast": ([[1.0, 2.0]], [1.0, 0.1, 0.2]),
-            "E, tau | (materials, modes)": ([[[1.0]]], [1.0]),
+            "E and tau | (materials, terms of the series)": ([[[1.0]]], [1.0]),
             "tau | shape": ([1.0, 2.0], [1.0]),
             "E | 1e+12": ([10000000000000.0], [1.0]),
             "tau | 1e+32": ([1.0, 1.0], [1.0, 1e-33]),
@@ -322,7 +321,7 @@ REFUSED = [
         vr.tables.law,
         {
             "material = True (a truth value)": True,
-            "thickness of the cylinder is given | depends on its load and radius": (
+            "thickness of the cylinder is given | depends on load and radius": (
                 RUBBER_COVER,
                 STEEL,
             ),
@@ -375,7 +374,7 @@ REFUSED = [
         vr.Bodies,
         {
             "shapes | cylinder (2,), base (3,)": (MANY, vr.Prony([[1.0]] * 3, [1.0])),
-            "the pair has 80 modes: must be a pair of at most 64 modes": (
+            "the pair has 80 terms in both series: must be one of at most 64": (
                 vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0)),
                 vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0)),
                 0.1,

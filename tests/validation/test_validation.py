@@ -38,7 +38,7 @@ def test_what_is_exceeded_or_no_number_is_counted():
     checks = Check("one", 2.0, 1.0, "absolute"), Check("lost", np.nan, 1.0, "absolute")
     bad = Report(checks, {"seed": 0})
     assert not bad.ok
-    assert "2 checks: 2 beyond what is allowed." in str(bad)
+    assert "2 checks: 2 with a difference larger than allowed." in str(bad)
 
 
 def test_sample_holds_every_corner():

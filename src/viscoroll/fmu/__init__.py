@@ -360,9 +360,8 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
-        found = "a table of the coupled solution, which an FMU cannot contain"
-        allowed = "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table to "
-        allowed += ".h, for C"
+        found = "a table of pressure and shear solved together, which an FMU cannot contain"
+        allowed = "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table as C"
         sentence = f"the law that is given is {found}: must be {allowed}"
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)
@@ -426,8 +425,8 @@ def _warn_of_fast_law(given: Any, table: LawTable) -> None:
         speeds = given.l0 / given.T_ref * np.logspace(-3.0, 3.0, 61)
         error = given.replace(coupled=False).validity(speeds).traction.sentence
     warn_of_model(
-        "the FMU has the fast law of a cover (as with coupled=False), not a table of the coupled "
-        f"solution: {error}"
+        "the FMU has the fast law of a cover, as a Cylinder with coupled=False, in place of the "
+        f"solution of pressure and shear together: {error}"
     )
 
 
@@ -482,7 +481,7 @@ def _start_values(
         values |= {"mass": given.m, "inertia": given.j}
     for name, value in values.items():
         if np.ndim(value):
-            raise shape_error(name, np.shape(value), "one number: an FMU contains one cylinder")
+            raise shape_error(name, np.shape(value), "one number, as an FMU contains one cylinder")
     return {name: float(values.get(name, start)) for name, start in starts.items()}
 
 

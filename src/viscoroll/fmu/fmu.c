@@ -73,9 +73,9 @@ static int in_mode(const instance *m, int allowed, const char *call) {
                                       "terminated"};
   char text[200];
   if (m->mode & allowed) return OK;
-  int n = snprintf(text, sizeof text, "%s: mode is", call);
+  int n = snprintf(text, sizeof text, "%s is refused in the mode", call);
   for (int k = 0; k < 6; k++)
-    if (m->mode == 1 << k) n += snprintf(text + n, sizeof text - n, " %s: must be", names[k]);
+    if (m->mode == 1 << k) n += snprintf(text + n, sizeof text - n, " %s: the mode must be", names[k]);
   for (int k = 0, first = 1; k < 6; k++)
     if (allowed & 1 << k) n += snprintf(text + n, sizeof text - n, first ? " %s" : " or %s", names[k]), first = 0;
   return tell(m, text);
@@ -95,8 +95,8 @@ static instance *create(const char *name, const char *token, void *environment, 
   snprintf(m->name, sizeof m->name, "%s", name ? name : "");
   m->environment = environment, m->log = log, m->exchange = exchange;
   reset(m);
-  if (!token || strcmp(token, TOKEN)) other = "token: must be " TOKEN ", that of modelDescription.xml";
-  else if (!ROLLER && !exchange) other = "co-simulation: is not there: must be model exchange";
+  if (!token || strcmp(token, TOKEN)) other = "GUID or token: must be " TOKEN ", that of modelDescription.xml";
+  else if (!ROLLER && !exchange) other = "co-simulation is not available: use model exchange";
   return other ? (tell(m, other), free(m), NULL) : m;
 }
 
@@ -115,7 +115,7 @@ static int in_range(const instance *m) {
 #endif
   double l0 = m->x[n_R] / kappa_of(m->x);
   char text[120];
-  snprintf(text, sizeof text, "%.9g, at which the law of the cover holds: set R, load, width and E_prime for it", L0);
+  snprintf(text, sizeof text, "%.9g, at which the law of the cover holds; set R, load, width and E_prime so", L0);
   return L0 > 0.0 && !(fabs(l0 - L0) <= 1e-9 * L0) ? refuse(m, "contact length at rest, in m,", l0, text) : OK;
 }
 
@@ -171,8 +171,8 @@ static int advance(instance *m, double h) {
   vr_roller r = roller(m);
   if (!(x[n_rtol] >= 1e-12 && x[n_rtol] <= 1e-2)) return refuse(m, "rtol", x[n_rtol], "in [1e-12, 0.01]"); /* as of roll */
   switch (vr_roll(&r, h / x[n_T_ref], x[n_rtol])) {
-  case VR_STUCK: return refuse(m, "rtol", x[n_rtol], "larger: its steps fell to rounding or are too many");
-  case VR_REFUSED: return refuse(m, "communicationStepSize", h, "such that the motion stays in the range of doubles");
+  case VR_STUCK: return refuse(m, "rtol", x[n_rtol], "larger, as the steps become too short or too many with it");
+  case VR_REFUSED: return refuse(m, "communicationStepSize", h, "one by which all speeds and distances stay finite");
   }
   x[n_v] = r.V * unit, x[n_slip] = r.slip * unit, x[n_x] = r.x * x[n_R], m->step = r.step, m->stale = 1;
   return OK;
@@ -240,7 +240,7 @@ static int update(instance *m, const char *call) {
   if (m->stale && m->mode & BEGINNING && start(m)) return ERROR;
   if (m->stale && (in_range(m) || evaluate(m))) return ERROR;
   for (int n = 1; m->stale && n < COUNT; n++)
-    if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite: an input or a parameter is too large or small");
+    if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite; an input or a parameter is too large or small");
   m->stale = 0;
   return OK;
 }
@@ -276,7 +276,7 @@ static int slopes(instance *m, const unsigned u[], size_t nu, const unsigned k[]
   for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nk; j++) {
       double d = slope(m, u[i], k[j]);
-      if (!isfinite(d)) return refuse(m, "slope", d, "of a rate or output by a state or input");
+      if (!isfinite(d)) return refuse(m, "derivative", d, "that of a rate or an output by a state or an input");
       s[adjoint ? j : i] += d * seed[adjoint ? i : j];
     }
   return OK;
@@ -344,7 +344,7 @@ typedef struct {
 
 static int save(instance *m, void **state) {
   snapshot *s = *state ? (snapshot *)*state : (snapshot *)calloc(1, sizeof *s);
-  if (!s) return refuse(m, "memory for a state, in bytes", sizeof *s, "there");
+  if (!s) return refuse(m, "memory for a state, in bytes,", sizeof *s, "available");
   snprintf(s->token, sizeof s->token, "%s", TOKEN);
   memcpy(s->x, m->x, sizeof s->x), s->step = m->step, s->stop = m->stop, s->mode = m->mode;
   *state = s;
@@ -352,9 +352,9 @@ static int save(instance *m, void **state) {
 }
 static int restore(instance *m, const void *state) {
   const snapshot *s = (const snapshot *)state;
-  if (!s) return refuse(m, "FMU state", 0.0, "one that was taken or deserialized");
+  if (!s) return refuse(m, "FMU state", 0.0, "one that the tool has taken or deserialized before");
   if (s->mode & (m->exchange ? STEP : EVENT | CONTINUOUS))
-    return tell(m, "FMU state: is that of another interface: must be of model exchange or co-simulation as this one");
+    return tell(m, "the FMU state is of another interface, co-simulation in place of model exchange or the reverse");
   memcpy(m->x, s->x, sizeof m->x), m->step = s->step, m->stop = s->stop, m->mode = s->mode, m->stale = 1;
   return OK;
 }
@@ -363,14 +363,14 @@ static int release(void **state) {
   return OK;
 }
 static int serialize(instance *m, const void *state, char bytes[], size_t size) {
-  if (!state || size < sizeof(snapshot)) return refuse(m, "bytes of a state", size, "as many as the size function says");
+  if (!state || size < sizeof(snapshot)) return refuse(m, "bytes of a state", size, "as many as the size function returns");
   return memcpy(bytes, state, sizeof(snapshot)), OK;
 }
 static int deserialize(instance *m, const char bytes[], size_t size, void **state) {
   if (size != sizeof(snapshot) || strncmp(bytes, TOKEN, sizeof((snapshot *)0)->token))
-    return refuse(m, "bytes of a state", size, "those that this FMU has serialized");
+    return refuse(m, "number of bytes", size, "that of a state which this FMU has serialized");
   snapshot *s = (snapshot *)malloc(sizeof *s);
-  if (!s) return refuse(m, "memory for a state, in bytes", size, "there");
+  if (!s) return refuse(m, "memory for a state, in bytes,", size, "available");
   return memcpy(s, bytes, sizeof *s), *state = s, OK;
 }
 

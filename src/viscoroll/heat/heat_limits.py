@@ -137,9 +137,9 @@ def heat_limit(
     allowed = check_number("allowed", allowed, unit=SI)
     value = check_array(name, plain[name], above=0.0 if name == "load" else -math.inf)
     if name == "V" and not value.all():
-        raise described_error("V", "is 0, where the roller does not heat", "other than 0")
+        raise described_error("V", "is 0, where the roller stays cold", "other than 0")
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
-        raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g}")
+        raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g} °C")
     arrays = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
     broadcast_shape(**arrays)
     if scene.cover is None:
@@ -284,7 +284,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     }
     states = heat_states(roller, scene, "turning_points", given)
     if states.shape:
-        raise shape_error("roller", states.shape, "one without arrays")
+        raise shape_error("roller", states.shape, "a Cylinder without arrays")
 
     curve = states.curve
 
@@ -374,10 +374,17 @@ def conductance(
     h: Any = arrays.get("thickness")
     k: Any = arrays.get("conductivity")
     if core == "cooled" and (h is None or k is None):
-        fault = "is 'cooled', but thickness and conductivity of the cover are not both given"
-        raise described_error("core", fault, "'insulated', or give both")
+        raise described_error(
+            "core",
+            "is 'cooled', but thickness and conductivity of the cover are not both given",
+            "'insulated', unless both are given",
+        )
     if h is not None and np.any(h >= arrays["R"]):
-        raise ParameterError("thickness", format_value(h), f"below R = {format_value(R)}")
+        raise ParameterError(
+            "thickness",
+            format_value(h),
+            f"below R = {format_value(R)}, the radius of the surface of the cover",
+        )
     # circumference at the middle of the cover; of the surface where nothing is conducted
     width = 2.0 * math.pi * (arrays["R"] if h is None or k is None else arrays["R"] - 0.5 * h)
     # with a source q of unit volume the mean rise of a slab is q h^2/(12 k) (4 + B)/(1 + B) if one
@@ -433,9 +440,9 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
     return Assumption(
         biot <= BIOT_LIMIT,
         biot,
-        f"the Biot number is {biot:.2g}: the hottest point is {above:.2g} % of the rise above the "
-        "mean temperature; "
-        f"up to {BIOT_LIMIT} (10 %) one temperature stands for the body",
+        f"the Biot number (film times thickness divided by conductivity) is {biot:.2g}: the "
+        f"hottest point warms {above:.2g} % more than the mean; up to {BIOT_LIMIT}, where that is "
+        "10 %, one temperature stands for the body",
     )
 
 
@@ -516,7 +523,7 @@ def warming(
     )
     times = check_array("t", t, unit=scale, low=0.0)
     if times.ndim != 1 or not times.size:
-        raise shape_error("t", times.shape, "a vector (t,) of at least one time")
+        raise shape_error("t", times.shape, "a list of one time or more")
     if (np.diff(times) <= 0.0).any():
         raise described_error("t", "does not ascend", "in ascending order")
     speed, corners = _speed_of(V, scale)
@@ -544,7 +551,7 @@ def warming(
             raise described_error(
                 "V",
                 f"makes the temperature run away between t = {span[0]:g} and {span[1]:g} s",
-                "lower, or the load lower, or t shorter",
+                "lower; or lower the load, or end t earlier",
             )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])
@@ -553,7 +560,7 @@ def warming(
     if (hot := course.max(initial=-np.inf)) > states.curve.high:
         sentence = (
             f"the roller warms to {hot:.5g} degrees Celsius: must be at most "
-            f"{states.curve.high:g}, the highest temperature of the shift of its material"
+            f"{states.curve.high:g}, up to which the shift of its material is defined"
         )
         raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
@@ -586,6 +593,6 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
         # at a jump the value after it
         return lambda time: float(np.interp(time, V.times, V.values)), V.times
     if callable(V):
-        return lambda time: check_number("V", V(time), unit=scale), np.empty(0)
+        return lambda time: check_number(f"V({time:g})", V(time), unit="m s-1"), np.empty(0)
     speed = check_number("V", V, unit=scale)
     return lambda time: speed, np.empty(0)

@@ -170,8 +170,11 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
     """
     reference = material.temperature
     if shift is None:
-        allowed = "given to the Material of a body that relaxes: a WLF, an Arrhenius or a function"
-        raise ParameterError("shift", None, allowed)
+        raise ParameterError(
+            "shift",
+            None,
+            "given to the Material that relaxes: vr.WLF(...), vr.Arrhenius(...) or a function",
+        )
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
         pole = shift.pole
         slope = shift.slope / math.log(2.0)
@@ -229,7 +232,9 @@ def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
     unknown = np.flatnonzero(np.isnan(a_T))
     if unknown.size == theta.size:
         raise described_error(
-            "shift", "is not defined at the temperature of the material", "defined there"
+            "shift",
+            "is not defined at the temperature of the material",
+            "a function that returns a number > 0 there",
         )
     own = np.nanargmin(np.abs(np.log(a_T)))  # at the reference a_T is 1
     first = unknown[unknown < own].max(initial=-1) + 1
@@ -434,26 +439,28 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     slip_share = check_number("slip_share", slip_share, low=0.0, high=1.0)
     pair = roller.body_data and roller.body_data.pair
     if pair is None:
-        allowed = (
-            "a Cylinder of a Material with a shift=, in place of a Scene or of E, nu, T_epsilon "
-            "and T_sigma"
+        raise described_error(
+            "roller",
+            f"given to {call} has no Material",
+            "a Cylinder(material=Material(..., shift=...)), as a Scene and a Cylinder by E, nu, "
+            "T_epsilon and T_sigma have no temperature",
         )
-        raise described_error("roller", f"of {call} has no Material", allowed)
     bodies = (pair.cylinder, slip_share), (pair.half_space, 1.0 - slip_share)
     # all loss in rolling is that of the body that relaxes, if there is one alone
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
     if not found:
         raise described_error(
-            "material", "does not relax, and rolls without loss", "one that relaxes"
+            "material", "does not relax, and rolls without loss", "one with a Prony series"
         )
     if pair.like:  # each has half of both losses, at one temperature
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
-        allowed = (
-            "elastic, rigid or of the same material; pair_temperatures has a temperature "
-            "for each body"
+        raise described_error(
+            "base",
+            "relaxes too",
+            "elastic, rigid or of the material of the cylinder; for two materials that relax call "
+            "vr.pair_temperatures",
         )
-        raise described_error("base", "relaxes too", allowed)
     return found[0]
 
 
@@ -481,11 +488,11 @@ def heat_states(
     """
     body = heated_body(roller, call, slip_share)
     curve = shift_curve(body.material)
-    lows = {"conductance": 0.0, "capacity": 0.0}
+    lows = {"conductance": 0.0, "capacity": 0.0, "ambient": -math.inf}
     arrays = {
         name: check_array(name, value, above=lows.get(name, -math.inf))
         for name, value in given.items()
-        if value is not None
+        if value is not None or name in lows
     }
     for name in ("ambient", "start"):
         if name in arrays:
@@ -499,8 +506,8 @@ def heat_states(
     remade = vertical and not pair.like and pair.share not in (0.0, 1.0)
     if vertical and (covered or (remade and driven is not None)):
         allowed = (
-            "left out for a cover, and beside an elastic body where a load is given: the law would "
-            "be another one at each temperature"
+            "left out for a cover and, where a force, torque or slope is given, beside an elastic "
+            "body: the law would be another one at each temperature"
         )
         raise described_error("vertical_shift", "is given", allowed)
     several = scene.material_array
@@ -551,8 +558,8 @@ def check_ambient(ambient: Floats, curve: ShiftCurve, name: str) -> None:
         if not curve.low <= at <= curve.high:
             allowed = f"at least {curve.low:g} and at most {curve.high:g}"
             sentence = (
-                f"{name} = {at:g} degrees Celsius is outside the range of the shift: must "
-                f"be {allowed}"
+                f"{name} = {at:g} degrees Celsius is outside the range of the shift of the "
+                f"material: must be {allowed}"
             )
             raise ParameterError(name, at, allowed, sentence)
 

@@ -366,8 +366,7 @@ def temperature(
     driven = {name: plain[name] for name in driven}
     loaded = any(value is not None for value in driven.values())
     if V is None and not loaded:
-        allowed = "given, or a force, torque or slope from which it follows"
-        raise described_error("V", "is not given", allowed)
+        raise described_error("V", "is not given", "given, or a force, torque or slope")
     beside = driven if loaded and V is not None else None
     states = heat_states(
         roller, scene, call="temperature", given=plain, slip_share=slip_share, driven=beside
@@ -396,8 +395,7 @@ def _under_load(
     Raises ParameterError for a material with a vertical shift, and as :func:`viscoroll.steady`.
     """
     if states.body.material.vertical_shift is not None:
-        allowed = "left out where the speed follows from the load: give V"
-        raise described_error("vertical_shift", "is given", allowed)
+        raise described_error("vertical_shift", "is given", "left out unless V is given too")
     force = 0.0 if driven["force"] is None else driven["force"]
     # in the shape of all states, as ambient and conductance may have axes that the loads lack
     driven = driven | {"force": np.broadcast_to(force, states.shape)}
@@ -443,24 +441,20 @@ def _reasons(
         own = np.flatnonzero(zeros.state == n)
         if not own.size:
             found[n] = (
-                f"heat and loss balance at no temperature up to {HOTTEST:g} degrees Celsius: the "
-                "temperature runs away, or none is steady"
+                f"loss and heat given off are equal at no temperature up to {HOTTEST:g} °C: the "
+                "roller warms without limit, or no speed is steady"
             )
             continue
         at = own[np.argmin(zeros.theta[own])]
-        theta = f"{zeros.theta[at]:.5g} degrees Celsius"
-        if not np.isfinite(rows["a_T"][at]):
-            found[n] = (
-                f"the only balance is at {theta}: above {states.curve.high:g}, the highest "
-                "temperature of the shift"
-            )
-        elif not known[at]:
-            found[n] = f"the balance at {theta} needs more traction than the friction allows"
-        else:
-            found[n] = (
-                f"the only balance is at {theta}, where the transit frequency of the contact lies "
-                "outside the measured band of the material"
-            )
+        where = (
+            f"above {states.curve.high:g}, up to which the shift of the material is defined"
+            if not np.isfinite(rows["a_T"][at])
+            else "but friction is too small there for the force or torque"
+            if not known[at]
+            else "where the transit frequency (speed divided by contact length) lies outside the "
+            "frequencies at which the material was measured"
+        )
+        found[n] = f"loss and heat given off are equal at {zeros.theta[at]:.5g} °C, {where}"
     return found
 
 
@@ -534,16 +528,19 @@ def pair_temperatures(
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
     if pair is None or scene.shape or pair.covered:
-        problem = "has arrays, a thickness or no Material"
-        raise described_error("roller", problem, "a Cylinder of two Materials, without thickness")
+        raise described_error(
+            "roller",
+            "has arrays, a thickness or no Material",
+            "a Cylinder of Materials without thickness, and without arrays",
+        )
     speed = abs(check_number("V", V, unit=scale))
     around = check_array("ambient", ambient)
     off = check_array("conductance", conductance, above=0.0)
     for name, array in (("ambient", around), ("conductance", off)):
         if array.shape != (2,):
-            raise shape_error(name, array.shape, "(2,), of cylinder and base")
+            raise shape_error(name, array.shape, "two numbers, of cylinder and base")
     if not speed:
-        raise described_error("V", "is 0, where the bodies do not heat", "other than 0")
+        raise described_error("V", "is 0, where the bodies stay cold", "other than 0")
     curves = [shift_curve(body) for body in (pair.cylinder, pair.half_space)]
     for at, curve in zip(around, curves, strict=True):
         check_ambient(at, curve, "ambient")

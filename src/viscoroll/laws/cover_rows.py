@@ -470,7 +470,7 @@ def _find_length(
         # at most a factor of 2 in z at once; no step so small that the next slope would be rounding
         y += math.copysign(min(max(_LEAST_STEP, abs(step)), 0.7), step)
     allowed = (
-        "larger: no contact length that carries the load was found; take a thicker layer or a "
+        "larger, as no contact length was found that carries the load; take a thicker layer or a "
         "smaller load (l0: contact length at rest of half-spaces)"
     )
     raise ParameterError("thickness/l0", f"{modes.cover.thinnest:g}", allowed)

@@ -94,12 +94,12 @@ class LawGrid:
         axis of delta, and for another kappa than the grid states.
         """
         if self.kappa is not None and abs(kappa - self.kappa) > _ROUNDING * self.kappa:
-            raise ParameterError("kappa", kappa, f"{self.kappa:g}, for which the grid was computed")
+            raise ParameterError("kappa", kappa, f"{self.kappa:g}, the R/l0 of the grid")
         if not self.rows.slips:
             raise described_error(
                 "material",
-                "is a grid without mu, or without full slip at both ends of its axis delta",
-                "one with both for a Scene (vr.law evaluates any grid)",
+                "is a grid without mu, or without full slip at the first and the last delta",
+                "a grid with both for a Scene; vr.law takes any grid",
             )
         # rows hold M in N for kappa = 1: a table has kappa M/(P R)
         of_moments = kappa / (self.load * self.R)
@@ -193,11 +193,12 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     names = [name for name in (*UNITS, "alpha") if name in table.variables]
     if "M" not in names and not {"M_half_space", "M_cylinder"} <= set(names):
         raise FileError(
-            path, "is not a grid of a law: variable 'M' is missing: must be given over V"
+            path,
+            "is not a grid of a law, since it has neither M over V nor M_half_space and M_cylinder",
         )
     for name in names:
         if not (table[name].size and table[name].dtype.kind in "iuf"):
-            problem = f"is not a grid of a law: {name} = {describe_value(table[name].values)}"
+            problem = f"is not a grid of a law, since {name} = {describe_value(table[name].values)}"
             raise FileError(path, f"{problem}: must be real numbers, at least one")
         refuse_filled(table[name], path)
         if name in ("V", "delta") and (
@@ -205,7 +206,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         ):
             raise FileError(
                 path,
-                f"is not a grid of a law: {name} must increase strictly, over at least two nodes",
+                f"is not a grid of a law, since {name} does not increase over two nodes or more",
             )
     with _told_of(path):
         table = _in_si(table)
@@ -228,11 +229,11 @@ def _told_of(path: Any) -> Iterator[None]:
     try:
         yield
     except ParameterError as error:
-        raise FileError(path, f"is not a grid of a law: {error}") from error
+        raise FileError(path, f"is not a grid of a law, since {error}") from error
     except (KeyError, ValueError, TypeError) as error:
         allowed = "V(V), delta(delta), Q(V, delta) and M(V) or M(V, delta), perhaps over alpha too"
         raise FileError(
-            path, f"is not a grid of a law: must have {allowed}, and limits that are numbers"
+            path, f"is not a grid of a law: must have {allowed}, and a valid_range of numbers"
         ) from error
 
 
@@ -252,7 +253,7 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
             f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at "
             f"{place or variable.name}"
         )
-        raise FileError(path, f"is not a grid of a law: {found}: must be {allowed}")
+        raise FileError(path, f"is not a grid of a law, since {found}: must be {allowed}")
 
 
 def refuse_filled(variable: DataArray, path: Any) -> None:
@@ -269,12 +270,12 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
     filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
     _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
-    _refuse_nodes(variable, filled, path, "given: this number stands for a missing value")
+    _refuse_nodes(variable, filled, path, "another number, as this one stands for a missing value")
     with _told_of(path):
         low, high = _valid_range(variable)
     margin = _ROUNDING * np.abs((low, high))
     invalid = (values < low - margin[0]) | (values > high + margin[1])
-    valid = f"within its valid range [{low:g}, {high:g}], beyond which values are missing"
+    valid = f"in [{low:g}, {high:g}], beyond which the file declares values as missing"
     _refuse_nodes(variable, invalid, path, valid)
 
 
@@ -328,7 +329,10 @@ def check_nodes(table: Dataset, path: Any) -> None:
     if "Q" in table.variables:
         Q = table["Q"].transpose(..., "delta")
         _refuse_nodes(
-            Q, np.abs(Q.values) > limit * (1.0 + _ROUNDING), path, f"within +-mu P = {limit:.6g}"
+            Q,
+            np.abs(Q.values) > limit * (1.0 + _ROUNDING),
+            path,
+            f"at most {limit:.6g} in size, the friction limit mu P",
         )
         noise = _NOISE * np.abs(Q.values).max()
         # + 0 Q: in the shape of Q
@@ -339,7 +343,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
             Q,
             against,
             path,
-            "of the same sign as delta: a wheel with omega R > V has a driving Q > 0",
+            "of the same sign as delta, as a roller with omega R > V is driven forward by Q > 0",
         )
         if "M" in table.variables and "delta" in table["M"].dims:
             M = table["M"].transpose(*Q.dims)
@@ -348,7 +352,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
             # noise/_NOISE is the largest |Q|
             made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), arm * noise / _NOISE)
             _refuse_nodes(
-                M, made, path, ">= -delta (R Q + M_cylinder), as the contact generates no power"
+                M, made, path, "larger, as the lost power M + delta (R Q + M_cylinder) is below 0"
             )
         # before the first node -infinity: it never falls there
         falls = np.diff(Q.values, prepend=-np.inf) < -noise
@@ -356,7 +360,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
             Q,
             falls,
             path,
-            "at least that at the node of delta before, as Q does not fall with delta",
+            "at least Q at the next smaller delta, as Q does not fall where delta grows",
         )
 
 
@@ -384,7 +388,7 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
         raise FileError(path, "coordinate 'alpha' must be > 0 and increase strictly")
     low, high = nodes[[0, -1]]
     if alpha is None or not low <= check_number("alpha", alpha) <= high:
-        raise ParameterError("alpha", alpha, f"in [{low:.15g}, {high:.15g}], the range of {path}")
+        raise ParameterError("alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {path}")
     if low == high:
         return table.squeeze("alpha")
     # by the number of nodes, the last for all larger numbers
@@ -411,11 +415,11 @@ def _in_si(table: Dataset) -> Dataset:
         try:
             by = conversion_factor(unit, wanted)[0]
         except ParameterError as error:
-            allowed = "1" if wanted == "1" else f"a unit of {wanted}"
+            allowed = "1" if wanted == "1" else f"{wanted} or a multiple of it"
             if name == "V":
-                allowed += ", or 1 of a grid without dimension"
+                allowed += ", or 1 of a dimensionless grid"
             elif given["V"] == "1":
-                allowed += ", since V has no unit"
+                allowed += ", as the unit of V is 1"
             raise ParameterError(f"attribute units of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(float) * by})
     if given["V"] == "1":

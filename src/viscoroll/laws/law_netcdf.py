@@ -78,7 +78,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     if isinstance(material, Pair):
         return replace(law_table(material.law), T_ref=material.T_ref, pair=material)
     if not is_real(material):
-        allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
+        allowed = "a Material, a Cylinder, a Prony, Bodies, or the number alpha"
         raise ParameterError("material", describe_value(material), allowed)
     return law_table(check_number("alpha", material, low=1.0, high=HIGHEST_ALPHA))
 
@@ -194,7 +194,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     ):
         wider = "`viscoroll tables law --alpha LOW:HIGH` writes another range"
         raise ParameterError(
-            "alpha", alpha, f"in [{low:.15g}, {high:.15g}], the range of {path} ({wider})"
+            "alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {path} ({wider})"
         )
     return axis.at(alpha)
 
@@ -215,7 +215,7 @@ def parse_law(content: Content, path: Any) -> LawTable:
     if kind == AXIS:
         raise FileError(
             path,
-            "is the law of every alpha: for one, as 11, give "
+            "is the law of every alpha, not of one material: for alpha = 11, as an example, give "
             "vr.tables.law(vr.load_law(path, alpha=11.0))",
         )
     with _refuse_incomplete(path):

@@ -308,7 +308,7 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
         allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref"
-        found = f"range from {1.0 / fastest:g} to {1.0 / slowest:g} T_ref"
+        found = f"range from {1.0 / fastest:g} to {1.0 / slowest:g} times T_ref"
         raise described_error("times of relaxation and creep", found, allowed)
 
 

@@ -262,7 +262,7 @@ class LawTable:
         of a law of two different bodies.
         """
         if self.pair is None:
-            allowed = "the law of a Material, in SI units"
+            allowed = "the law of a Material in SI units; a dimensionless one is for a Scene"
             raise described_error("material", "is a dimensionless law", allowed)
         if base is not None:
             allowed = "left out: the law already contains both bodies"
@@ -335,7 +335,7 @@ def law_table(
     if not isinstance(material, Prony | Bodies):
         material = float(material)
     elif material.shape:
-        raise ParameterError("material", repr(material), "a single one: make a call for each")
+        raise ParameterError("material", repr(material), "a single material: make a call for each")
     elif isinstance(material, Bodies) and not isinstance(material, Cover):
         if material.like or material.alpha == 1.0:
             material = material.total if material.total.E.size else 1.0

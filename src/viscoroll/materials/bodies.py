@@ -97,21 +97,23 @@ class Bodies(OneOrMany):
         bodies = {"cylinder": self.cylinder, "base": self.base}
         for name, body in bodies.items():
             if not isinstance(body, Prony):
-                allowed = "a Prony series; of n pairs, one with arrays (n, modes)"
+                allowed = "a Prony series, as vr.Prony([2.0], [0.1]), of one body or of n bodies"
                 raise ParameterError(name, describe_value(body), allowed)
         if self.poisson is not None:
             values = check_array("poisson", self.poisson, above=-1.0, high=0.5)
             if values.shape != (2,):
-                raise shape_error("poisson", values.shape, "(2,): of the cylinder and the base")
+                raise shape_error("poisson", values.shape, "two numbers, of cylinder and base")
             object.__setattr__(self, "poisson", tuple(values.tolist()))
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
-            raise shape_error("share", share.shape, "a number, or one for each pair, (n,)")
+            raise shape_error("share", share.shape, "a number, or a list, one for each pair")
         object.__setattr__(self, "shape", broadcast_shape(**bodies, share=share))
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
         if modes > MOST_MODES:
             raise described_error(
-                "the pair", f"has {modes} modes", f"a pair of at most {MOST_MODES} modes"
+                "the pair",
+                f"has {modes} terms in both series",
+                f"one of at most {MOST_MODES} terms",
             )
         object.__setattr__(self, "share", read_only(share))
 
@@ -165,8 +167,7 @@ class Bodies(OneOrMany):
 
     @cached_property
     def total(self) -> Prony:
-        """The :class:`Prony` series that stands for both in the contact law, of the shape of the
-        pairs.
+        """The :class:`Prony` series of both bodies in the contact law, of the shape of the pairs.
 
         Of two equal series it is that series, whatever the share is; else a series in creep form.
         Raises ParameterError for a pair of more than 64 modes, or times over more than 32 decades.
@@ -217,9 +218,7 @@ class Bodies(OneOrMany):
 
     def blocks(self, which: Integers) -> Iterator[Block]:
         """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations
-        on whole arrays.
-
-        It is for n pairs, not for a single one.
+        on whole arrays; of n pairs, not of a single one.
 
         Parameters
         ----------
@@ -391,9 +390,9 @@ class Cover(Bodies):
         if is_real(series):
             series = series_of_alpha(check_number("alpha", series, low=1.0, high=HIGHEST_ALPHA))
         other = Prony.elastic() if other is None else other
-        for name, body, also in (("series", series, "an alpha"), ("other", other, "None")):
+        for name, body, also in (("series", series, "a number alpha"), ("other", other, "None")):
             if not isinstance(body, Prony) or body.shape:
-                allowed = f"a Prony series of one material, or {also}"
+                allowed = f"a Prony series of one material, as vr.Prony([2.0], [0.1]), or {also}"
                 raise ParameterError(name, describe_value(body), allowed)
         check_choice("on", on, "cylinder", "base")
         ratio = check_array("nu", nu, low=0.0, high=0.5)
@@ -401,9 +400,9 @@ class Cover(Bodies):
         part = check_number("part", part, above=0.0, high=1.0)
         given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
         if given.ndim > 1:
-            raise shape_error("thickness", given.shape, "a number, or one for each cover, (n,)")
+            raise shape_error("thickness", given.shape, "a number, or a list, one for each cover")
         if ratio.shape not in ((), given.shape):
-            raise shape_error("nu", ratio.shape, "a number, or one for each thickness, (n,)")
+            raise shape_error("nu", ratio.shape, "a number, or a list, one for each thickness")
         if other_thickness is not None:
             other_thickness = read_only(self._check_other_thickness(other_thickness, given, part))
         bodies = (series, other) if on == "cylinder" else (other, series)
@@ -436,16 +435,16 @@ class Cover(Bodies):
         other = check_array("other_thickness", value, above=0.0, high=_THICKEST)
         if part == 1.0:
             raise ParameterError(
-                "other_thickness", other, "left out: the other body is rigid, as part is 1"
+                "other_thickness", other, "left out: part = 1 makes the other body rigid"
             )
         if other.shape != thickness.shape:
-            raise shape_error("other_thickness", other.shape, "of the shape of thickness")
+            raise shape_error("other_thickness", other.shape, f"{thickness.shape}, as thickness")
         ratio = other / thickness
         if np.ptp(ratio) > _SAME_RATIO * np.max(ratio):
             raise described_error(
                 "other_thickness",
-                "is not proportional to thickness",
-                "in the same ratio to it for all pairs",
+                f"is {ratio.min():.9g} to {ratio.max():.9g} times thickness",
+                "the same multiple for all covers",
             )
         return other
 

@@ -38,9 +38,9 @@ VERSION = 1
 #: attribute with the checksum of the numbers
 CHECKSUM = "sha256_of_numbers"
 #: what a user can do about a file that is not as it was written
-REMEDY = "write it again by vr.tables.save or `viscoroll tables law`"
+REMEDY = "write the file again by vr.tables.save or `viscoroll tables law`"
 #: what a user can do about such a file of a material
-_REWRITE = "write it again by Material.to_netcdf"
+_REWRITE = "write the file again by Material.to_netcdf"
 #: largest file that is read, bytes; laws have less than 10 MB
 _MOST_BYTES = 1 << 27
 #: first bytes of netCDF-4
@@ -186,7 +186,7 @@ def is_law(path: FilePath) -> bool:
     Raises FileError as :func:`read_content`.
     """
     content = read_content(
-        path, "material or law of viscoroll", f"{_REWRITE}, or a law by vr.tables.save"
+        path, "file of a material or a law", f"{_REWRITE}, or a law by vr.tables.save"
     )
     return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 
@@ -200,7 +200,9 @@ def read_law(path: FilePath) -> Content:
     Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no
     netCDF, is no law, is of another schema, lacks a variable, or has one that is not numeric.
     """
-    content = read_content(path, "law of `viscoroll tables law`, or a grid", REMEDY)
+    content = read_content(
+        path, "law (of `viscoroll tables law`) or a grid (of `viscoroll tables build`)", REMEDY
+    )
     check_law(content, path)
     return content
 
@@ -230,7 +232,7 @@ def read_content(path: FilePath, expected: str, remedy: str) -> Content:
             }
             return Content(numbers, {key: _to_scalar(value) for key, value in file.attrs.items()})
     except Exception as error:  # libraries raise many kinds
-        raise FileError(path, f"is damaged, cut or incomplete: {remedy}") from error
+        raise FileError(path, f"is damaged, cut or incomplete; {remedy}") from error
 
 
 def _to_scalar(value: Any) -> Any:
@@ -262,21 +264,20 @@ def check_law(content: Content, path: Any) -> None:
     kind = str(attributes.get(KIND))  # another writer may have stored an array
     if kind not in KINDS:
         raise FileError(
-            path, "is neither a law nor a grid: `viscoroll tables law` writes a law of a material"
+            path,
+            "is neither a law (of `viscoroll tables law`) nor a grid (of `viscoroll tables build`)",
         )
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
-        problem = f"has the law schema {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
-        raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
+        problem = f"has law_schema = {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
+        raise FileError(path, f"{problem}; {REMEDY}, or use the version that wrote it")
     for name in ("title", "source", "material")[: 2 if kind == AXIS else 3]:
         if not isinstance(attributes.get(name), str):
-            raise FileError(path, f"is an incomplete law: attribute {name} is missing; {REMEDY}")
+            raise FileError(path, f"is an incomplete law without attribute {name}; {REMEDY}")
     try:
         found = checksum(numbers, kind)
     except KeyError as error:
-        raise FileError(
-            path, f"is an incomplete law: variable {error} is missing; {REMEDY}"
-        ) from error
+        raise FileError(path, f"is an incomplete law without variable {error}; {REMEDY}") from error
     except ValueError:  # a variable that is not numeric
         found = ""
     if found != attributes.get(CHECKSUM):
@@ -385,19 +386,19 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
     """
     numbers, about = read_content(path, "material that Material.to_netcdf wrote", _REWRITE)
     if str(about.get(KIND)) in KINDS:
-        raise FileError(path, "is not a material file: it is a law, for vr.load_law")
+        raise FileError(path, "is a law, not a material: read it by vr.load_law")
     if {"V", "Q"} <= numbers.keys():
         raise FileError(
-            path, "is not a material file: it is a grid, for vr.load_law and vr.tables.interpolate"
+            path, "is a grid of a law, not a material: read it by vr.load_law or vr.tables.load"
         )
     if about.get("schema") != _SCHEMA:
         raise FileError(
-            path, f"is not a material of viscoroll {__version__} (attribute schema): {_REWRITE}"
+            path, f"has attribute schema = {about.get('schema')!r:.40}, not {_SCHEMA!r}; {_REWRITE}"
         )
     if seal_matches(Path(path).read_bytes()) is None:
         raise FileError(
             path,
-            "is cut, or was written by another program than viscoroll (no checksum at its end): "
+            "is cut, or was written by another program than viscoroll (no checksum at its end); "
             f"{_REWRITE}",
         )
     if about.get("given") not in _FORMS:
@@ -429,8 +430,8 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
                 found["shift"] = kind(**found.pop(name))
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
     except ParameterError as error:
-        raise FileError(path, f"has a wrong value: {error}; {_REWRITE}") from error
+        raise FileError(path, f"has a wrong value ({error}); {_REWRITE}") from error
     except KeyError as error:
-        raise FileError(path, f"is incomplete: {error} is missing; {_REWRITE}") from error
+        raise FileError(path, f"is incomplete, as {error} is missing; {_REWRITE}") from error
     except (TypeError, ValueError) as error:
-        raise FileError(path, f"has wrong variables or attributes: {_REWRITE}") from error
+        raise FileError(path, f"has variables or attributes of a wrong type; {_REWRITE}") from error

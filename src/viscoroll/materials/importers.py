@@ -110,13 +110,13 @@ class FromPrograms:
             table = check_array("g", g, low=0.0)
             if table.ndim != 2 or table.shape[1] != 3:
                 sentence = (
-                    "tau is not given: give tau, or rows (g_i, k_i, tau_i) as g; g has shape "
-                    f"{table.shape}"
+                    "tau is not given: give a tau for each g, or the table of *VISCOELASTIC as g, "
+                    f"with rows (g_i, k_i, tau_i); g has shape {table.shape}"
                 )
                 raise ParameterError("tau", None, "one time for each g", sentence)
             if k is not None:
                 raise ParameterError(
-                    "k", k, "left out beside rows (g_i, k_i, tau_i), which contain it"
+                    "k", k, "left out where g has rows (g_i, k_i, tau_i), which contain it"
                 )
             g, k, tau = table.T
         return cls._from_fractions(
@@ -309,7 +309,7 @@ class FromPrograms:
         if terms is not None:
             if terms[resting].any():
                 if nu is not None or bulk is not None:
-                    raise exactly_one_error("nu or bulk", "K with beta = 0", both=True)
+                    raise exactly_one_error("nu (or bulk)", "a K with beta = 0", both=True)
                 bulk = math.fsum(terms[resting])
             terms = terms[~resting]
         check_one_given(nu=nu, bulk=bulk)
@@ -448,7 +448,7 @@ class FromPrograms:
                 prony = plane_strain(G_inf, G, K_inf=K_inf, K=K, tau=tau)
                 early = _poisson(G_inf + math.fsum(G), K_inf + math.fsum(K))
             _warn_of_low_poisson(G_inf, G, K_inf, K, tau)
-        check_names("keyword", more, _MATERIAL_KEYWORDS, "a keyword of this function")
+        check_names("argument", more, _MATERIAL_KEYWORDS, "known beside moduli and times")
         return cls(E=E, nu=nu, prony=prony, nu_instant=early, **more)  # type: ignore[call-arg]
 
 
@@ -485,9 +485,9 @@ def _warn_of_low_poisson(G_inf: float, G: Floats, K_inf: float, K: Floats, tau: 
     lowest = np.min(_poisson(G_inf + left @ G, K_inf + left @ K))
     if lowest < _LEAST_POISSON:
         text = (
-            f"bulk and shear moduli give Poisson's ratio {lowest:.3g} at some time, below "
-            f"{_LEAST_POISSON:g}, which rubber does not have: give both in one unit, and as moduli "
-            "or as fractions like the program from which they are"
+            f"shear and bulk terms give Poisson's ratio {lowest:.3g} at some time, and no rubber "
+            f"has less than {_LEAST_POISSON:g}: check that both are in the same unit, as fractions "
+            "of moduli for abaqus and ansys, as moduli in Pa for comsol and lsdyna"
         )
         warn_of_model(text)
 
@@ -513,7 +513,7 @@ def check_pairs(
         raise shape_error(name, first.shape, allowed)
     if first.shape != second.shape:
         found = f"has shape {first.shape} and {other} has shape {second.shape}"
-        raise described_error(name, found, "lists of one length")
+        raise described_error(name, found, "lists of the same length")
     return first, second
 
 
@@ -535,11 +535,11 @@ def _long_time_shear(
     }
     given = {name: value for name, value in ways.items() if value is not None}
     if len(given) != 1:
-        found = f"is given by {' and '.join(given) or 'no parameter'}"
+        found = f"is given by {' and '.join(given) or 'no argument'}"
         allowed = "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0"
-        raise described_error("the long-time modulus", found, allowed)
+        raise described_error("the long-time shear modulus", found, allowed)
     (name, value) = given.popitem()
-    named = {"G0": "G0 - sum G", "beta = 0": "G with beta = 0"}
+    named = {"G0": "long-time G0 - sum of G", "beta = 0": "long-time G (of zero beta)"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
 
@@ -553,7 +553,7 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:
-        allowed = "below 1: otherwise the long-time modulus is not positive"
+        allowed = "below 1, since 1 minus this sum is the part of the modulus left at long times"
         raise ParameterError(f"sum of {name}", f"{1.0 - rest:g}", allowed)
     return rest
 

@@ -108,12 +108,12 @@ class Material(FromPrograms):
         """
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError(
-                "prony", describe_value(self.prony), "a Prony series of one material"
+                "prony", describe_value(self.prony), "one Prony series, as vr.Prony([2.0], [0.1])"
             )
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             object.__setattr__(self, "E", math.inf)
             if self.prony.alpha > 1.0:
-                raise ParameterError("E", self.E, "finite for a viscoelastic material")
+                raise ParameterError("E", self.E, "finite for a viscoelastic material (inf: rigid)")
             if self.thickness is not None:
                 raise ParameterError("thickness", self.thickness, "left out for a rigid body")
         else:
@@ -129,7 +129,7 @@ class Material(FromPrograms):
         if self.temperature is not None:
             object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
         if self.shift is not None:
-            _refuse_no_shift("shift", self.shift, "a WLF, an Arrhenius")
+            _refuse_no_shift("shift", self.shift, "vr.WLF(...), vr.Arrhenius(...)")
         vertical = self.vertical_shift
         if not (isinstance(vertical, str | None) and vertical in (None, "entropic")):
             _refuse_no_shift("vertical_shift", vertical, "'entropic'")
@@ -301,15 +301,16 @@ class Material(FromPrograms):
         True
         """
         shift = self.shift if shift is None else shift
-        _refuse_no_shift("shift", shift, "given, to the Material or here, as a WLF, an Arrhenius")
+        allowed = "given to the Material or to at(), as vr.WLF(...), vr.Arrhenius(...)"
+        _refuse_no_shift("shift", shift, allowed)
         assert shift is not None
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
                 f"temperature is an array of shape {given.shape}, but a material has one "
-                "temperature: make a list, [rubber.at(T, shift) for T in temperatures], or give "
-                "the temperatures to a run file as a column or a distribution, [material] "
-                "temperature = ... (docs/ensembles.md)"
+                "temperature: make a list, [rubber.at(T, shift) for T in temperatures], or write "
+                "a run file, in which temperature of [material] may be a column or a distribution "
+                "(docs/ensembles.md)"
             )
             raise ParameterError("temperature", given.shape, "one number", sentence)
         temperature = check_celsius("temperature", float(given))
@@ -509,17 +510,17 @@ class Material(FromPrograms):
         """
         times = self.prony.tau * self.T_ref
         values = [
-            ("E", self.E, "Pa, of long times"),
-            ("instantaneous", self.instant, "Pa"),
-            ("nu", self.nu, ""),
-            ("instantaneous nu", self.nu_instant, ""),
-            ("modes", times.size, ""),
-            ("T_ref", self.T_ref, "s"),
+            ("long-time modulus E", self.E, "Pa"),
+            ("instantaneous modulus", self.instant, "Pa"),
+            ("Poisson's ratio nu", self.nu, ""),
+            ("nu at t = 0", self.nu_instant, ""),
+            ("terms of the series", times.size, ""),
+            ("unit of time T_ref", self.T_ref, "s"),
             ("relaxation times", f"{times[0]:.3g} to {times[-1]:.3g}" if times.size else None, "s"),
             ("density", self.density, "kg m-3"),
             ("thickness", self.thickness, "m"),
             ("temperature", self.temperature, "degrees Celsius"),
-            ("measured", self.measured and str(self.measured), ""),
+            ("measured from", self.measured and str(self.measured), ""),
         ]
         return self.name or "Material", [
             SummaryRow(name, value if isinstance(value, str) else f"{value:g}", unit)
@@ -528,7 +529,6 @@ class Material(FromPrograms):
         ]
 
     _repr_html_ = Result._repr_html_
-
     plot = Result.plot
 
     def _figure(self) -> Figure:
@@ -596,5 +596,5 @@ def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
     words ``allowed`` say what is allowed beside a function.
     """
     if not callable(shift) or isinstance(shift, type):
-        allowed = f"{allowed} or a function of the temperature"
+        allowed = f"{allowed} or a function of the temperature in degrees Celsius"
         raise ParameterError(name, describe_value(shift), allowed)

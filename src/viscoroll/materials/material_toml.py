@@ -32,7 +32,7 @@ from .prony import Prony
 #: sections of a file that describe a body
 SECTIONS = ("material", "base")
 #: what is missing from a file without them
-_NO_MATERIAL = "section [material] is missing: it needs E and nu"
+_NO_MATERIAL = "section [material] is missing: add it, with at least E and nu"
 
 
 @dataclass
@@ -253,8 +253,8 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
         return as_struct(path, name, content, MaterialSection)
     for key in content.keys() & MaterialSection.__annotations__.keys() - {"file"}:
         problem = (
-            f"{key}: must be left out beside file; to change it, write the content of the "
-            "file here in its place"
+            f"{key} must be left out beside the key file: to change {key}, write the content "
+            "of that file here in place of file"
         )
         raise section_error(path, name, key, problem)
     return as_struct(path, name, content, FileSection)
@@ -286,7 +286,9 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
         if temperature is None:
             return material
         if material.shift is None:
-            problem = f"temperature = {temperature:g}: wlf or arrhenius is needed too"
+            problem = (
+                f"temperature = {temperature:g}: needs wlf or arrhenius too, to shift the times"
+            )
             raise section_error(path, name, "temperature", problem)
         return material.at(temperature)
 
@@ -313,17 +315,17 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
                 other,
                 section,
                 "file",
-                "file: must be left out in a file that is named by file: write E, nu, ... there",
+                "names another file by the key file: write E, nu, ... there in its place",
             )
         return _parse_material(other, section, content[section])
     except FileError as error:
-        known = other.suffix.lower() in (SUFFIX, ".toml")
         advice = (
             ""
-            if known
-            else "; file must name a .toml with [material], or the .nc of a material or its law"
+            if other.suffix.lower() in (SUFFIX, ".toml")
+            else "; it must be a .toml with [material], or the .nc of a material or its law"
         )
-        raise section_error(path, name, "file", f"{error}{advice}") from error
+        problem = f"the key file names a file that cannot be used ({error}){advice}"
+        raise section_error(path, name, "file", problem) from error
 
 
 def _material_of_law(path: Path) -> Material:
@@ -341,14 +343,14 @@ def _material_of_law(path: Path) -> Material:
     if not content.keys() & set(SECTIONS):
         raise FileError(
             path,
-            "is the law of a material without units: it must be the law of a [material] in SI "
-            "units",
+            "is the law of a material without units: it must be that of a Material in SI units, as "
+            "`viscoroll tables law` makes it of a file with [material]",
         )
     if "base" in content:
         raise FileError(
             path,
-            "is the law of a pair of materials: file must name the law of one material (a pair is "
-            "the material= of a Cylinder, by vr.load_law)",
+            "is the law of a pair of materials: it must be that of one material (in Python the law "
+            "of a pair is read by vr.load_law, as material= of a Cylinder)",
         )
     return parse_materials(path, content)["material"]
 
@@ -369,7 +371,7 @@ def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
     """
     if "nu" not in given:
         if not math.isinf(given["E"]):
-            raise section_error(path, name, "", "needs nu")
+            raise section_error(path, name, "", "needs nu, Poisson's ratio")
         given["nu"] = Material.rigid().nu
     if "reference" in given:
         reference = given.pop("reference")
@@ -382,8 +384,8 @@ def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
     if times := given.keys() & {"T_epsilon", "T_sigma"}:
         if len(times) == 1 or given.keys() & {"T_ref", "prony"}:
             problem = (
-                "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony "
-                "and creep"
+                "T_epsilon and T_sigma (s), a standard linear solid, must be given together, "
+                "and without T_ref, prony and creep"
             )
             raise section_error(path, name, "", problem)
         return Material.sls(**given)

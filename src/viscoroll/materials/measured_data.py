@@ -70,15 +70,13 @@ class _ShiftLaw:
         found = check_celsius("temperature", temperature)
         above = found - self.pole
         if above <= 0.0:
-            allowed = (
-                f"> T0 - C2 = {self.pole}, where the WLF shift is infinite, in degrees Celsius"
-            )
+            allowed = f"above T0 - C2 = {self.pole} °C, where the WLF shift is infinite"
             raise ParameterError("temperature", temperature, allowed)
         # the difference of the reciprocals, without cancellation near T0
         exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
         if not abs(exponent) < 700.0:
             allowed = (
-                f"nearer to T0: a_T = exp({exponent:.3g}) cannot be represented in double precision"
+                f"nearer to T0 = {self.T0}, as a_T = exp({exponent:.3g}) is beyond double precision"
             )
             raise ParameterError("temperature", temperature, allowed)
         return math.exp(exponent)
@@ -219,8 +217,8 @@ class ShiftFactors:
         low = self.temperature[0]
         high = self.temperature[-1]
         if not low - NEAR <= found <= high + NEAR:
-            allowed = f"within [{low}, {high}], where factors were found"
-            allowed += "; beyond them use wlf() or arrhenius()"
+            allowed = f"in [{low}, {high}] °C, where shift factors were found; for others use the "
+            allowed += "law that wlf() or arrhenius() of these factors returns"
             raise ParameterError("temperature", temperature, allowed)
         if low == high:
             return self.a_T[0]
@@ -331,11 +329,11 @@ class ShiftFactors:
             raise described_error(
                 "temperature",
                 f"has {len(self.a_T)} values",
-                f"a list of at least {fewest} for this law",
+                f"a list of at least {fewest}, to fit this law",
             )
         if not self.a_T[-1] < self.a_T[0]:
             found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
-            raise ParameterError("a_T", found, "factors that fall with temperature")
+            raise ParameterError("a_T", found, "shift factors that fall with temperature")
         return np.subtract(self.temperature, self.T0), np.log10(self.a_T)
 
     def _told(self, law: _Law) -> _Law:
@@ -348,8 +346,8 @@ class ShiftFactors:
         worst = int(np.argmax(np.abs(errors)))
         if abs(errors[worst]) > _FAR_OFF:
             text = (
-                f"{law} misses the factor found at {self.temperature[worst]:g} °C by "
-                f"{errors[worst]:+.2f} decades"
+                f"{law} gives {10.0 ** errors[worst]:.3g} times the shift factor that was found at "
+                f"{self.temperature[worst]:g} °C: use the found factors in place of this law"
             )
             warn_of_model(text)
         return law
@@ -370,8 +368,8 @@ def check_celsius(name: str, temperature: Any) -> float:
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
         low, high = USUAL_RANGE
         text = (
-            f"{name} is outside {low:g} to {high:g}: temperatures are in degrees Celsius, and "
-            "this looks like kelvin"
+            f"{name} is outside {low:g} to {high:g}: the unit is degrees Celsius, and this "
+            "looks like kelvin, or like a value that was converted twice"
         )
         warn_of_model(text)
     return found
@@ -396,10 +394,10 @@ def relative_shift(
     its warnings, pass.
     """
     factor, unit = (
-        1.0 if at is None else check_number("a_T", shift(at), above=0.0)
+        1.0 if at is None else check_number(f"shift({at})", shift(at), above=0.0)
         for at in (temperature, reference)
     )
-    return check_number("a_T", factor / unit, above=0.0)
+    return check_number(f"shift({temperature})/shift({reference})", factor / unit, above=0.0)
 
 
 def vertical_factor(shift: VerticalShift, temperature: float, reference: float | None) -> float:
@@ -421,10 +419,12 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
         raise ParameterError(
             "temperature",
             None,
-            "given to the Material beside vertical_shift, as the temperature of its moduli",
+            "given to a Material that has vertical_shift, as the temperature of its moduli",
         )
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
-    factor, unit = (check_number("b_T", b_T(at), above=0.0) for at in (temperature, reference))
+    factor, unit = (
+        check_number(f"vertical_shift({at})", b_T(at), above=0.0) for at in (temperature, reference)
+    )
     return factor / unit
 
 
@@ -497,14 +497,13 @@ class Measured:
         check_fields(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
-            raise ParameterError("high", self.high, f">= low = {self.low}")
+            raise ParameterError("high", self.high, f">= low = {self.low} (both in rad/s)")
         check_text("source", self.source)
-        pairs = check_array("M_error", self.M_error, low=0.0).reshape(-1, 2)
-        if not (np.diff(pairs[:, 0]) > 0.0).all():
-            raise described_error(
-                "M_error", "has frequencies that do not ascend", "sorted by transit frequency"
-            )
-        object.__setattr__(self, "M_error", tuple(map(tuple, pairs.tolist())))
+        pairs = check_array("M_error", self.M_error, low=0.0)
+        if pairs.size % 2 or not (np.diff(pairs.ravel()[::2]) > 0.0).all():
+            allowed = "pairs (transit frequency in 1/s, relative error of M), by rising frequency"
+            raise described_error("M_error", "is not in pairs, or not sorted", allowed)
+        object.__setattr__(self, "M_error", tuple(map(tuple, pairs.reshape(-1, 2).tolist())))
         if self.strain is not None:
             check_fields(self, "1", strain=0.0)
 

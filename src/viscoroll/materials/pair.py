@@ -87,7 +87,9 @@ class Pair:
             body = getattr(self, name)
             if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
                 named = "material" if name == "cylinder" else name
-                raise ParameterError(named, describe_value(body), "a Material")
+                raise ParameterError(
+                    named, describe_value(body), "a Material, as vr.Material(E=..., nu=...)"
+                )
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
             raise ParameterError("base", "rigid", "a deformable body, since the cylinder is rigid")
         if self.covered is not None and self.plane != "strain":
@@ -184,8 +186,8 @@ class Pair:
         """
         if self.covered is not None:
             allowed = (
-                "left out here: the law of a layer depends on its load and radius; give the "
-                "materials to a Cylinder"
+                "left out here, as the law of a layer depends on load and radius too; give a "
+                "Cylinder of these materials"
             )
             raise described_error(f"thickness of the {self.covered}", "is given", allowed)
         if self.like:
@@ -236,15 +238,14 @@ class Pair:
         found = "has several values"
         if layer.prony.shape:
             allowed = (
-                "one for all cylinders: thickness, load and R may differ, and beside a "
-                "rigid body E and nu"
+                "one for all cylinders (thickness, load and R may differ, and beside a rigid body "
+                "E and nu)"
             )
-            raise described_error(f"the Prony series of the cover, the {on},", found, allowed)
+            raise described_error(f"the Prony series of the cover ({on})", found, allowed)
         if np.ptp(parts) > 0.0:
             allowed = (
-                "one for all cylinders where a cover lies beside an elastic body: let thickness, "
-                "load or R differ, or "
-                "make the other body rigid (E = inf)"
+                "one for all cylinders where a cover lies beside a body that is not rigid: let "
+                "thickness, load or R differ, or make that body rigid (E = inf)"
             )
             raise described_error("E or nu of a body", found, allowed)
         # both in the unit of time of the pair
@@ -285,8 +286,9 @@ class Pair:
         """
         own = self.cover(l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"is the law of a layer with thickness/l0 = {cover.thickness:.6g}"
-            allowed = f"the law for {format_value(own.thickness)}, which follows from load and R"
+            found = f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}"
+            allowed = f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
+            allowed += "contact length at rest of half-spaces); make the law with this load and R"
             raise described_error("material", found, allowed)
 
     def refuse_coupled_ratios(self, law: Prony | Bodies | Cover, limit: float) -> None:
@@ -296,8 +298,11 @@ class Pair:
         limit: Dundurs' constant up to which bodies count as uncoupled, dimensionless.
         """
         if type(law) is Bodies and law.poisson is None and self.most_coupled > limit:
-            found = "is an array, and would need a table of the coupled solution for each value"
-            raise described_error("nu", found, "one number; or coupled=False, for the fast law")
+            raise described_error(
+                "nu",
+                "is an array, and each value needs a table of pressure and shear solved together",
+                "one number; or give coupled=False, for the fast law without a table",
+            )
 
     @cached_property
     def dundurs(self) -> tuple[Any, Any]:

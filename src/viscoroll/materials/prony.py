@@ -77,7 +77,7 @@ class OneOrMany:
 
     def __len__(self) -> int:
         if not self.shape:
-            raise TypeError("this is a single material: only several have a length and an index")
+            raise TypeError("a single material has no length and no index, as several have")
         return self.shape[0]
 
     def __bool__(self) -> bool:
@@ -147,9 +147,8 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
-            raise ParameterError(
-                "sum of E", f"{np.max(alpha) - 1.0:g}", f"at most {HIGHEST_ALPHA:g}"
-            )
+            allowed = f"at most {HIGHEST_ALPHA:g}, as each E is divided by the long-time modulus"
+            raise ParameterError("sum of E", f"{np.max(alpha) - 1.0:g}", allowed)
         self._set(False, strengths, times, alpha)
 
     @classmethod
@@ -188,7 +187,9 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(("J", "T"), J, T)
         rest = np.asarray(1.0 - _exact_sums(strengths))
         if not (rest > 0.0).all():
-            allowed = "below 1: otherwise the instantaneous modulus is infinite"
+            allowed = (
+                "below 1, since 1 minus this sum is the instantaneous compliance, which is > 0"
+            )
             raise ParameterError("sum of J", f"{1.0 - rest.min()!s}", allowed)
         given = (
             1.0 / rest
@@ -196,16 +197,15 @@ class Prony(OneOrMany):
             else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
         )
         if given.shape not in ((), rest.shape):
-            allowed = "a number" + f", or one for each material, {rest.shape}" * (rest.ndim > 0)
-            raise shape_error("alpha", given.shape, allowed)
+            raise shape_error("alpha", given.shape, "a number, or one for each material")
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
-            allowed = f"left out, or 1/(1 - sum J) = {1.0 / rest[off].flat[0]!s}"
+            allowed = f"left out, or 1/(1 - sum of J) = {1.0 / rest[off].flat[0]!s}"
             raise ParameterError("alpha", given[off].flat[0], allowed)
         if (given > HIGHEST_ALPHA).any():
             raise ParameterError(
-                "J", strengths.tolist(), f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}"
+                "J", strengths.tolist(), f"such that 1/(1 - sum of J) is at most {HIGHEST_ALPHA:g}"
             )
         return cls._make(True, strengths, times, given if given.ndim else float(given))
 
@@ -520,16 +520,18 @@ def _check_modes(
     values = np.minimum(values, 1e300)  # sums stay finite, and are refused
     check_array(names[1], each, low=1.0 / LONGEST_TIME, high=LONGEST_TIME)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
-        allowed = f"one time for each {names[0]}, of shape {values.shape}"
+        allowed = f"one time for each {names[0]}, which has shape {values.shape}"
         raise shape_error(names[1], each.shape, allowed)
     shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
     if len(shape) not in (1, 2):
-        raise shape_error(", ".join(names), shape, "(modes,) or (materials, modes)")
+        allowed = "lists, as [2.0] and [0.1], or arrays (materials, terms of the series)"
+        raise described_error(" and ".join(names), f"have shape {shape}", allowed)
     values, each = sort_modes(*np.broadcast_arrays(values, each))
     present = values > 0.0
     most = int(present.sum(axis=-1).max(initial=0))
     if most > MOST_MODES:
-        raise described_error(names[1], f"has {most} times", f"a list of at most {MOST_MODES}")
+        found = f"has {most} different times (two bodies, or shear and bulk, count together)"
+        raise described_error(names[1], found, f"a list of at most {MOST_MODES}")
     longest = each.max(axis=-1, initial=0.0, where=present)
     shortest = each.min(axis=-1, initial=np.inf, where=present)
     wide = longest > LARGEST_TIME_RATIO * shortest
@@ -537,7 +539,7 @@ def _check_modes(
         raise described_error(
             names[1],
             f"ranges from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}",
-            f"within a factor of {LARGEST_TIME_RATIO:g}",
+            f"times within a factor of {LARGEST_TIME_RATIO:g}",
         )
     # modes without strength are last (sort_modes); those that no material has are cut off
     return values[..., :most], each[..., :most]

@@ -292,4 +292,8 @@ def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
     short = fast > slow
     if short.any():
         at = int(np.argmax(np.where(short, fast, 0.0)))
-        raise ParameterError("T_epsilon", slow.flat[at], f">= T_sigma = {fast.flat[at]}")
+        raise ParameterError(
+            "T_epsilon",
+            slow.flat[at],
+            f">= T_sigma = {fast.flat[at]} (creep takes longer than relaxation)",
+        )

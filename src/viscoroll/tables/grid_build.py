@@ -102,7 +102,7 @@ def spread(
     if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
     if high - low == np.inf:
-        raise ParameterError("high", high, f"less than 1.8e308 + low, with low = {low:g}")
+        raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
     return (np.geomspace if spacing == "log" else np.linspace)(
         low, high, check_integer("count", count, 2, MAX_NODES)
     )
@@ -154,7 +154,7 @@ def creep_nodes(
     >>> grid = vr.tables.build(scene, V, delta=vr.tables.creep_nodes(scene, V, 161))
     """
     if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
-        raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
+        raise ParameterError("count", count, "odd, as the nodes are symmetric about 0")
     roller = roller_of(what, alpha)
     speeds = increasing("V", V, unit=roller.scale, above=0.0)
     roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
@@ -192,10 +192,10 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
         raise ParameterError(
             "what",
             describe_value(what),
-            "a Scene, a Cylinder or a law of half-spaces; of a body with a layer give the Cylinder",
+            "a Scene, a Cylinder or the law of half-spaces; if a body is a layer, the Cylinder",
         )
     if shape := (what if isinstance(what, Scene) else what.scene()).shape:
-        raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
+        raise shape_error("what", shape, "a Scene or Cylinder without arrays as parameters")
     if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
         raise described_error(
             "alpha", "is given", "left out beside a Cylinder or a material, which determines it"
@@ -219,7 +219,7 @@ def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
         found = "does not increase strictly" if axis.size else "is empty"
         found = found if axis.ndim == 1 else f"has shape {axis.shape}"
-        raise described_error(name, found, "a number, or a vector that increases strictly")
+        raise described_error(name, found, "a number, or a list of increasing numbers")
     return axis
 
 
@@ -241,9 +241,9 @@ _CYLINDER_NUMBERS = ("R", "m", "mu", "load")
 COMMENT = (
     "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, "
     "delta_star, delta_0 and beta are even in V; M, its two parts and Q(V, delta) are odd. Let d = "
-    "delta - delta_0(V), where delta_0 is 0 in a grid without this field, where beta is even in d, "
-    "Q odd. beta has a kink at |d| = delta_star(V), in a grid with delta_0 at other d of either "
-    "sign, beyond which the whole contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. A "
+    "delta - delta_0(V); a grid without delta_0 has delta_0 = 0, beta even in d, and Q odd in d. "
+    "beta has a kink at |d| = delta_star(V), in a grid with delta_0 at other d of either sign; "
+    "beyond the kink the whole contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. A "
     "grid is for plots and for look-up blocks of other programs. Do not use it where the onset of "
     "full slip decides a result: look-up smooths the kink, and spline_error and linear_error of Q "
     "and beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact "
@@ -397,13 +397,13 @@ def build(
         for name, given in {"V": V, "delta": delta, "alpha": alpha}.items():
             if given is not None:
                 raise described_error(
-                    name, "is given", "left out: the method 'coupled' has nodes of its own"
+                    name, "is given", "left out, as the method 'coupled' chooses its own nodes"
                 )
         return _coupled_dataset(roller_of(what, None), nodes, progress)
     for name, given in {"V": V, "delta": delta}.items():
         if given is None:
             raise ParameterError(
-                name, None, "the nodes of that axis, as of vr.tables.spread or creep_nodes"
+                name, None, "a list of values, as vr.tables.spread or creep_nodes makes it"
             )
     what = roller_of(what, alpha)
     si = isinstance(what, Cylinder)
@@ -417,7 +417,7 @@ def build(
         raise described_error(
             "the grid",
             f"has {size:.7g} nodes",
-            f"one of at most {MAX_NODES:g}, the product of those of {' and '.join(axes)}",
+            f"one of at most {MAX_NODES:g} (all values of {' times all of '.join(axes)})",
         )
     plane = tuple(name for name in axes if name != "delta")
     data = {

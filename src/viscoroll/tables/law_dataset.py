@@ -126,7 +126,7 @@ def law(
     table: LawTable | law_table.LawAxis
     if alpha is not None:
         if base is not None:
-            raise ParameterError("base", describe_value(base), "left out beside alpha")
+            raise ParameterError("base", describe_value(base), "left out if alpha is given")
         if np.shape(alpha) != (2,):
             raise ParameterError(
                 "alpha",
@@ -310,10 +310,10 @@ _MOST_ALLOWED = 0.5
 _COUPLED_RATIO = 8.0
 #: Kind of the file of a law -> points at which it is checked, and the reference.
 _REFERENCES = {
-    LAW: "points, against the formulas of the modes",
-    AXIS: "points shared by the alphas, against the formulas of the modes",
-    COVER: "speeds, against solves with more terms",
-    COUPLED: "points, against states of the coupled solution",
+    LAW: "random speeds, compared with the exact formulas",
+    AXIS: "random speeds and alphas, compared with the exact formulas",
+    COVER: "random speeds, compared with solutions of more terms",
+    COUPLED: "random states, compared with the coupled solution there",
 }
 #: Rounding error of a value, added to the stated error.
 ROUNDING = 2e-15
@@ -371,14 +371,14 @@ class Report:
         ]
         failed = sum(not check.passed for check in self.checks)
         verdict = (
-            f"{failed} beyond what is allowed"
+            f"{failed} with a difference larger than allowed"
             if failed
-            else "every difference is within what is allowed"
+            else "no difference is larger than allowed"
         )
         settings = ", ".join(f"{name} {value}" for name, value in self.settings.items())
         return "\n".join(
             [
-                f"{'check':<{width}}  measured   allowed            of what",
+                f"{'check':<{width}} difference  allowed            what is compared",
                 *lines,
                 "",
                 f"{len(self.checks)} checks: {verdict}.",
@@ -468,8 +468,8 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
     if not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
         raise FileError(
             source,
-            "is a grid of a cylinder or a material: only that of a Scene with an alpha can be "
-            "compared with the law; validate the law of the material (vr.tables.law) instead",
+            "is a grid of a cylinder or a material, and only a grid of a Scene with alpha can be "
+            "checked: check the law of that material in its place (vr.tables.law makes it)",
         )
     scene = Scene(
         alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"]
@@ -478,9 +478,14 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
     splines = errors_at(table, scene, random_points(table, count, seed))
     checks = []
     for name in table_files.fields_of(table):
-        kind = "relative" if name in RELATIVE_FIELDS else "divided by the largest"
+        kind = "relative" if name in RELATIVE_FIELDS else "divided by the largest value"
         checks.append(
-            Check(f"grid: {name}, nodes", nodes[name], NODES_ALLOWED, f"{kind}; all, against rows")
+            Check(
+                f"grid: {name}, nodes",
+                nodes[name],
+                NODES_ALLOWED,
+                f"{kind}; all nodes, compared with the law",
+            )
         )
         # a field of zeros, as M of elastic bodies, has no such bound
         most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
@@ -491,7 +496,7 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
                 f"grid: {name}, splines",
                 float(np.max(splines[name])),
                 allowed,
-                f"absolute; {count} points, against rows",
+                f"absolute; {count} random points, compared with the law",
             )
         )
     return checks

@@ -124,11 +124,11 @@ def _write_modelica(table: Dataset, path: Path) -> None:
         raise described_error(
             "table",
             f"has the axes {', '.join(table_files.axes_of(table))}",
-            "a grid over V and delta alone, the two inputs of a Modelica table: take one alpha by "
+            "a grid over V and delta alone, the two inputs of a Modelica table; take one alpha by "
             "table.sel(alpha=[...])",
         )
     if "M" not in table:
-        raise described_error("table", "has no variable M", "a grid with it, as of vr.tables.build")
+        raise described_error("table", "has no variable M", "a grid with M, as of vr.tables.build")
     V = table["V"].values
     delta = table["delta"].values
     head = np.append(0.0, delta)  # Modelica does not read the corner, but it must be there
@@ -238,7 +238,7 @@ def _write_header(dataset: Dataset, path: Path) -> None:
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError(
-            "path", path, "a file name that is a valid C identifier, for example rubber.h"
+            "path", path, "a name in C (letters, digits, _; no digit first) with .h, as rubber.h"
         )
     table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
     coupled = table.coupled is not None

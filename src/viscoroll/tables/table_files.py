@@ -48,7 +48,7 @@ KIND = "viscoroll_table"
 #: Kind of the file of a grid.
 GRID = "grid"
 #: What a user can do about a file that is not as it was written.
-_REBUILD = "write it again by vr.tables.save or `viscoroll tables`"
+_REBUILD = "write the file again by vr.tables.save or `viscoroll tables`"
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
@@ -97,7 +97,7 @@ def check_grid(table: Any, path: Any) -> None:
     if not hasattr(table, "attrs"):
         raise FileError(
             path,
-            f"is {describe_value(table)}: must be a dataset of vr.tables.build, or of "
+            f"is {describe_value(table)}, but must be a dataset of vr.tables.build or of "
             "vr.tables.load(file)",
         )
     about = table.attrs
@@ -117,13 +117,13 @@ def check_grid(table: Any, path: Any) -> None:
     major = SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
         problem = (
-            f"has the table schema {version!s:.20}, but viscoroll {__version__} reads {major}.x"
+            f"has schema_version = {version!s:.20}, but viscoroll {__version__} reads {major}.x"
         )
-        raise FileError(path, f"{problem}: {_REBUILD}, or install the version that wrote it")
+        raise FileError(path, f"{problem}; {_REBUILD}, or use the version that wrote it")
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
-            raise FileError(path, f"is incomplete: variable {name!r} is missing; {_REBUILD}")
+            raise FileError(path, f"is incomplete, as variable {name!r} is missing; {_REBUILD}")
         values = table[name].values
         dims = table[name].dims
         own = (name,) if name in axes else tuple(dim for dim in axes if dim in dims)
@@ -134,18 +134,18 @@ def check_grid(table: Any, path: Any) -> None:
         written = attributes(name, "load" in about)["units"]
         if unit != written:
             allowed = (
-                f"{written!r} (a grid in SI units also has the attribute load, the force per "
-                "length in N/m; others do not)"
+                f"{written!r} (a grid with the attribute load, the force per length in N/m, is in "
+                "SI units, one without it dimensionless)"
             )
             raise FileError(path, f"variable {name!r} has units = {unit!r:.40}: must be {allowed}")
         if values.dtype != np.float64:
             raise FileError(
-                path, f"variable {name!r} is of type {values.dtype}: convert it by astype(float)"
+                path, f"variable {name!r} is of type {values.dtype}: convert it by .astype(float)"
             )
         refuse_filled(table[name], path)
         if name in axes and (not values.size or (np.diff(values) <= 0.0).any()):
             raise FileError(
-                path, f"coordinate {name!r} must increase strictly: sort it by sortby({name!r})"
+                path, f"coordinate {name!r} must increase strictly: sort it by .sortby({name!r})"
             )
     check_nodes(table, path)
 
@@ -248,7 +248,7 @@ def load(path: str | PathLike[str]) -> Dataset:
     """
     import xarray as xr
 
-    content = read_sealed(path, _MAX_BYTES, "table of viscoroll", _REBUILD)
+    content = read_sealed(path, _MAX_BYTES, "law or a grid of viscoroll", _REBUILD)
     try:
         # numbers as they are written: no fill values as NaN, no seconds as durations
         table = xr.load_dataset(
@@ -256,7 +256,7 @@ def load(path: str | PathLike[str]) -> Dataset:
         )
     except Exception as error:  # libraries raise errors of many kinds
         raise FileError(
-            path, f"is damaged or is not a table of viscoroll in netCDF-4: {_REBUILD}"
+            path, f"is damaged or is not a law or grid in netCDF-4; {_REBUILD}"
         ) from error
     check_content(table, path)
     table.encoding["source"] = str(path)  # for messages, as where xarray reads a file
@@ -284,8 +284,6 @@ def info(path: str | PathLike[str]) -> str:
     ------
     FileError
         As :func:`tables.load`.
-    KeyError
-        A table of another program without the attribute title, or a law without its errors.
 
     Examples
     --------
@@ -296,7 +294,7 @@ def info(path: str | PathLike[str]) -> str:
     table = load(path)
     about = table.attrs
     size = Path(path).stat().st_size / 1e3
-    lines = [f"{path}: {about[KIND]}, {size:.0f} kB", about["title"], ""]
+    lines = [f"{path}: {about[KIND]}, {size:.0f} kB", about.get("title", "no title"), ""]
     if is_law(table):
         lines += [f"  {'function':<18}largest error"]
         lines += [
@@ -472,7 +470,7 @@ class Interpolant:
             raise ParameterError(
                 "coordinates",
                 ", ".join(points) or "none",
-                f"{wanted or 'none'} for {', '.join(names)} (axes of this grid: "
+                f"{wanted or 'none'}, as needed for {', '.join(names)} (this grid has the axes "
                 f"{', '.join(self._axes)})",
             )
         axes = {name: self._table[name] for name in points}
