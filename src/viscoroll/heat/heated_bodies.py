@@ -434,7 +434,7 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     call: name of the function, for errors.
     slip_share: the cylinder's part of the loss in slip, in [0, 1].
     Raises ParameterError for a Scene, for a cylinder by E to T_sigma, for bodies that do not relax
-    and for two of different materials that do.
+    and for two of different materials or thicknesses that do.
     """
     slip_share = check_number("slip_share", slip_share, low=0.0, high=1.0)
     pair = roller.body_data and roller.body_data.pair
@@ -452,14 +452,15 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
         raise described_error(
             "material", "does not relax, and rolls without loss", "one with a Prony series"
         )
-    if pair.like:  # each has half of both losses, at one temperature
+    # each has half of both losses, at one temperature; bodies of two thicknesses have other parts
+    if pair.like and pair.cylinder.thickness == pair.half_space.thickness:
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
         raise described_error(
             "base",
             "relaxes too",
-            "elastic, rigid or of the material of the cylinder; for two materials that relax call "
-            "vr.pair_temperatures",
+            "elastic, rigid, or of the material and the thickness of the cylinder; for two "
+            "half-spaces that relax call vr.pair_temperatures",
         )
     return found[0]
 

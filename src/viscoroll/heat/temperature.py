@@ -305,7 +305,7 @@ def temperature(
     Parameters
     ----------
     roller : a :class:`Cylinder` whose material has a ``shift``.  One body relaxes, or both are of
-        one material; of such each loses half of M, and both have one temperature.
+        one material and thickness: each has half of the loss, and both have one temperature.
     V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, of half-spaces without
         loss in slip; with one of force and torque (or a slope, which counts as the force) the loss
         in slip heats too.  None: the speed follows from the load at each temperature, as in
@@ -329,8 +329,9 @@ def temperature(
     ParameterError
         A conductance <= 0, an ambient outside the range of the shift, a roller without material,
         shift or relaxation, a shift that does not fall with temperature, two bodies of different
-        materials that relax, a vertical shift of a cover, under a load beside an elastic body,
-        or where V follows from the load, neither V nor a load; and as :func:`steady`.
+        materials or thicknesses that relax, a vertical shift of a cover, under a load beside an
+        elastic body, or where V follows from the load, neither V nor a load; and as
+        :func:`steady`.
 
     Warns
     -----
