@@ -142,10 +142,6 @@ VANISHED = 1e-4
 #: The second stick of the brief's example, printed to 9 digits.
 RETURN_TIME = 3e-9
 
-# --- full slip (test_slide.py) ---
-#: Closed forms of the elastic cylinder, over the speed and the duration: roundings.
-SLIDE = 1e-14
-
 # --- sampling.py (test_ensemble.py) ---
 #: Kolmogorov-Smirnov p-value of a recorded seed: fixed, so no chance of a false alarm.
 KOLMOGOROV = 0.01
