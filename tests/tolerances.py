@@ -95,7 +95,7 @@ SPEED_LIMIT = 1e-10
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 
-# --- laws/law_table.py (test_law_axis.py) ---
+# --- laws/law_table.py (test_law.py) ---
 #: M/V, eta/F and H/F^2 by the axis of alpha, relative; measured 4.9e-15.
 AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.
