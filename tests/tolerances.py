@@ -161,7 +161,7 @@ VALIDATION_WRONG = 1e-4
 #: Numbers read back from a drawn line: as computed, but for the factor of the axis.
 FIGURE = 1e-12
 
-# --- the benchmark that is kept (test_bench.py) ---
+# --- the benchmark that is kept (test_kept.py) ---
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
 #: A number in six digits, and what depends on such a one.
@@ -193,7 +193,7 @@ MEMORY_SLACK = 8_000_000
 #: What the last subnormals cannot hold: a few of their spacings.
 PROVEN_SUBNORMAL = 4e-323
 
-# --- planted defects (test_mutants.py) ---
+# --- planted defects (test_kept.py) ---
 # Share of them that the tests must notice, as pipeline/evidence/mutate.py asks; 52 of the first 54
 # were.
 MUTANTS_KILLED = 0.95
