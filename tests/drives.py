@@ -46,13 +46,19 @@ def given(plain):
     return vr.Feedback(**plain | {"value": given(plain["value"])})
 
 
-def solved(scene, V0, omega0, t, force=0.0, torque=0.0):
-    """V and omega at t by Radau's method on the equations of motion with the bound law."""
+def solved(scene, V0, omega0, t, force=0.0, torque=0.0, unsteady=False):
+    """V and omega at times t by Radau's method on the equations of motion with the bound law; of
+    two bodies of one material also with N.
+    """
     law = vr.law(scene)
 
     def rates(_, speeds):
         loads = law(*speeds)
-        pull = loads.Q - loads.M_half_space + force
-        return scene.gamma * pull, scene.gamma / scene.j * (torque - loads.Q - loads.M_cylinder)
+        N = unsteady and scene.contact(speeds[0], delta=0.0, fields="N").N
+        pull = scene.gamma * (loads.Q - loads.M_half_space + force)
+        V_rate = pull / (1.0 + 0.5 * scene.gamma * N)
+        moment = loads.M_cylinder + 0.5 * N * V_rate
+        return V_rate, scene.gamma / scene.j * (torque - loads.Q - moment)
 
-    return solve_ivp(rates, (0.0, t), (V0, omega0), "Radau", rtol=1e-10, atol=1e-12).y[:, -1]
+    start = V0, omega0
+    return solve_ivp(rates, (0.0, t[-1]), start, "Radau", t, rtol=1e-11, atol=1e-14).y

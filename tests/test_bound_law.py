@@ -33,7 +33,7 @@ BAD = [(np.nan, 0.1), (0.1, np.nan), (np.inf, 0.1), (0.1, -np.inf), (1e299, 1e29
 
 @pytest.fixture(scope="module", params=MATERIALS)
 def law(request):
-    return vr.law(vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[request.param]))
+    return vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[request.param]).law()
 
 
 def states(scene):
@@ -42,7 +42,7 @@ def states(scene):
     """
     V = np.array([1e-200, 1e-20, 1e-6, 3e-3, 0.07, 0.3, 4.0, 1e4, 1e160, 1e200])
     V = np.concatenate([V, -V])
-    delta_star = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    delta_star = scene.contact(V, delta=0.0).delta_star
     share = np.array([[0.0], [1e-9], [0.02], [0.3], [0.8], [0.9999], [1.0], [3.0]])
     omega = V * (1.0 + np.concatenate([share, -share]) * delta_star)
     more = [0.3, -0.3, 0.0, 0.0, -0.0, 0.0], [0.0, 0.4, 0.2, -0.2, 0.2, 0.0]
@@ -63,12 +63,12 @@ def test_law_is_contact_to_the_bit(law):
     (function, scene) = law.ctypes
     out = NUMBERS()
     V, omega = states(law.scene)
-    state = vr.contact(law.scene, V, omega=omega, fields=LoadsAndSlopes._fields)
+    state = law.scene.contact(V, omega=omega, fields=LoadsAndSlopes._fields)
     known = np.array([state[name] for name in LoadsAndSlopes._fields])
     found = law(V, omega, slopes=True)
     assert isinstance(found, LoadsAndSlopes)
     assert bits(found) == bits(known)
-    for V_n, omega_n, of_n in zip(V.tolist(), omega.tolist(), known.T, strict=True):
+    for V_n, omega_n, of_n in zip(V.tolist(), omega.tolist(), known.T):
         each = V_n, omega_n
         expected = bits(of_n)
         assert bits(law(*each, slopes=True)) == expected, each
@@ -102,16 +102,16 @@ def test_scipy_takes_the_c_function(law):
     assert found.signature == "int (double, double, double *, void *)"
     function, scene = law.ctypes
     assert (ctypes.cast(function, ctypes.c_void_p).value, scene.value) == law.address
-    assert vr.law(law.scene.replace(mu=0.3)).address[0] == law.address[0]  # one function for all
+    assert law.scene.replace(mu=0.3).law().address[0] == law.address[0]  # one function for all
 
 
 def test_a_law_lasts_as_long_as_somebody_holds_a_part_of_it():
     scene = vr.Scene(kappa=50.0, mu=0.2, material=SERIES.slower(1.7))
-    expected = vr.law(scene)(0.3, 0.3001)
-    (function, data) = vr.law(scene).ctypes
-    jitted = vr.law(scene).jitted
+    expected = scene.law()(0.3, 0.3001)
+    (function, data) = scene.law().ctypes
+    jitted = scene.law().jitted
     out = NUMBERS()
-    others = [vr.law(scene.replace(mu=mu, material=SERIES.slower(mu))) for mu in (0.3, 0.4)]
+    others = [scene.replace(mu=mu, material=SERIES.slower(mu)).law() for mu in (0.3, 0.4)]
     function(0.3, 0.3001, out, data)
     assert tuple(out[:4]) == jitted(0.3, 0.3001)[:4] == expected
     assert others[0](0.3, 0.3001) != expected

@@ -10,6 +10,7 @@ import c_code
 import numpy as np
 import pytest
 import tolerances as tol
+from calls import STEEL
 from closeness import close
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -30,13 +31,13 @@ THIN = vr.Material(2e6, 0.49, THREE, 0.1, thickness=0.01)
 RIGID = vr.Material.rigid()
 
 
-def roller_of(material: vr.Material, base: vr.Material, load: object = 2e3) -> vr.Cylinder:
+def roller_of(material, base, load=2e3):
     return vr.Cylinder(
         R=0.1, m=30.0, material=material, base=base, mu=0.5, load=load, coupled=False
     )
 
 
-def scene_on(material: object) -> vr.Scene:
+def scene_on(material):
     return vr.Scene(material=material, kappa=KAPPA, mu=MU, gamma=0.5, coupled=False)
 
 
@@ -62,7 +63,7 @@ on_each = pytest.mark.parametrize("scene", [*SCENES, ALL[-1]])
 
 def free(scene, V):
     """The contact at the creepage of free rolling, without traction."""
-    return vr.contact(scene, V, delta=vr.contact(scene, V, delta=0.0).delta_0)
+    return scene.contact(V, delta=scene.contact(V, delta=0.0).delta_0)
 
 
 def test_a_thick_cover_is_a_half_space():
@@ -72,17 +73,17 @@ def test_a_thick_cover_is_a_half_space():
     half = scene_on(vr.Bodies(THREE, ONE, 0.6))
     cover = scene_on(vr.Cover(THREE, nu=0.5, thickness=1e10, part=0.6, other=ONE))
     V, creep = np.meshgrid(10.0 ** np.linspace(-13.0, 1.0, 29), [1e-3, 0.5, 0.99])
-    delta = creep * vr.contact(half, V, delta=0.0).delta_star
+    delta = creep * half.contact(V, delta=0.0).delta_star
     rolling = free(cover, V)
-    known = vr.contact(half, V, delta=delta)
-    found = vr.contact(cover, V, delta=delta + rolling.delta_0)
-    assert np.abs(rolling.delta_0).max() < tol.COVER_THICK
+    known = half.contact(V, delta=delta)
+    found = cover.contact(V, delta=delta + rolling.delta_0)
+    assert abs(rolling.delta_0).max() < tol.COVER_THICK
     for name in ("lam", "epsilon", "delta_star", "M", "M_cylinder", "Q"):
         scale = {"Q": MU, "M_cylinder": known.M}.get(name, 0.0)
         of = found if name == "Q" else rolling
         assert close(of[name], known[name], tol.COVER_THICK, scale=scale, what=name)
     x, V = np.meshgrid(np.linspace(-1.5, 2.5, 101), [0.0, 1e-6, 1e-3, 0.1, 10.0, -1.0])
-    known, found = (vr.stress(scene, x, V, delta=0.0) for scene in (half, cover))
+    known, found = (scene.stress(x, V, delta=0.0) for scene in (half, cover))
     assert close(found.p, known.p, tol.COVER_PRESSURE, scale=known.p.max())
     assert list(found.keys()) == ["p"]
 
@@ -100,18 +101,18 @@ def test_rows_are_the_solve(scene):
     assert close([found.lam, found.delta_star], known, tol.COVER_ROWS)
     assert close(found.epsilon, epsilon, tol.COVER_ROWS, scale=1.0)
     M = (half_space + cylinder) * u / KAPPA
-    assert close(found.M_half_space, half_space * u / KAPPA, rel=rel, scale=M)
+    assert close(found.M_half_space, half_space * u / KAPPA, rel, scale=M)
     rel = tol.COVER_FREE if min(cover.nu, cover.other_nu) < 0.5 else tol.COVER_SHEAR
-    assert close(2.0 * KAPPA * found.delta_0, shear[0] + shear[1], rel=rel, scale=1.0)
+    assert close(2.0 * KAPPA * found.delta_0, shear[0] + shear[1], rel, scale=1.0)
     fields = "lam", "epsilon", "M_half_space", "M_cylinder"
-    full = vr.contact(scene, u / KAPPA, delta=1.0, fields=fields)
+    full = scene.contact(u / KAPPA, delta=1.0, fields=fields)
     g = shear[2] + shear[3]
     limited = (1.0 + (2.0 * g / (MU * L)) ** 4) ** -0.25
     of_Q = [MU * shear[4], MU * shear[5]]
     for n, lever in enumerate((2.0 * KAPPA, 2.0 * KAPPA + shear[0] + shear[1])):
         of_Q.append(-MU / lever * (shear[n] + limited * shear[2 + n]))
     for name, change in zip(full.keys(), of_Q, strict=True):
-        assert close(full[name] - found[name], change, rel=rel, scale=1.0, what=name)
+        assert close(full[name] - found[name], change, rel, scale=1.0, what=name)
 
 
 @pytest.mark.parametrize("scene", [*SCENES, scene_on(vr.Cover(WIDE, nu=0.5, thickness=0.2))])
@@ -119,7 +120,7 @@ def test_rows_join(scene):
     """Nothing jumps at the ends of octaves, also where rates are twelve decades apart."""
     V = np.array([[1.0 - 1e-15], [1.0 + 1e-15]]) * 2.0 ** np.arange(-20, 90) / KAPPA
     c = free(scene, V)
-    full = vr.contact(scene, V, delta=1.0)
+    full = scene.contact(V, delta=1.0)
     for name in ("lam", "epsilon", "delta_star", "M"):
         assert close(*c[name], tol.COVER_JOIN, what=name)
     for found in (c.delta_0, full.M, full.lam / KAPPA, full.epsilon / KAPPA):
@@ -173,10 +174,10 @@ def test_any_cover(nu, thickness, strength, time, part, on):
     state = free(scene, V[:, None])
     assert np.all((state.lam > 0.0) & (state.lam < 1.0) & (state.M > 0.0) & (state.epsilon > 0.0))
     delta = state.delta_0 + state.delta_star * np.linspace(-1.25, 1.25, 25)
-    c, back = (vr.contact(scene, each[:, None], delta=delta) for each in (V, -V))
-    assert np.all((np.abs(c.Q) <= MU) & (c.beta >= 0.0) & (c.beta <= 1.0))
+    c, back = (scene.contact(each[:, None], delta=delta) for each in (V, -V))
+    assert np.all((abs(c.Q) <= MU) & (c.beta >= 0.0) & (c.beta <= 1.0))
     assert np.all(np.diff(c.Q, axis=1) >= 0.0)
-    assert np.array_equal(c.full_slip, np.abs(c.Q) == MU)
+    assert np.array_equal(c.full_slip, abs(c.Q) == MU)
     assert np.all(np.diff(state.delta_star, axis=0) <= tol.COVER_THICK)
     assert np.array_equal([c.Q[:, 12], c.beta[:, 12]], [0.0 * V, 1.0 + 0.0 * V])
     for name, sign in (("Q", -1.0), ("M", -1.0), ("beta", 1.0), ("lam", 1.0)):
@@ -208,7 +209,7 @@ def test_slopes(scene):
     h = 1e-6
     for creep in ({"delta": 2e-3}, {"omega": 1.002 * V}):
         found, up, down = (
-            vr.contact(scene, V * (1.0 + step), **creep, slopes=True) for step in (0.0, h, -h)
+            scene.contact(V * (1.0 + step), **creep, slopes=True) for step in (0.0, h, -h)
         )
         for name, scale in (("Q", MU), ("M", found.M)):
             slope = (up[name] - down[name]) / (2.0 * h * V)
@@ -235,8 +236,7 @@ def test_energy_of_motions(scene, name):
     """
     (V, omega), drive = MOTIONS[name]
     t = np.linspace(0.0, 400.0 if name == "to rest" else 30.0, 31)
-    m = vr.roll(scene, V, omega, t, rtol=tol.COVER_RTOL, **drive)
-    assert m.status in (vr.MotionStatus.DONE, vr.MotionStatus.RESTED)
+    m = scene.roll(V, omega, t, rtol=tol.COVER_RTOL, **drive)
     energy = 0.5 * m.V**2 + 0.5 * scene.j * m.omega**2
     lost = m.slip_loss, m.rolling_loss, m.brake_loss
     put_in = 0.0 if m.work_torque is None else m.work_torque
@@ -257,13 +257,13 @@ def test_a_thickness_each(cover):
     scene = scene_on(cover)
     V = np.array([0.01, -0.5])
     motion = (0.1, [1.0, 9.0])
-    found = vr.contact(scene, V, delta=-2e-3, slopes=True)
-    motions = vr.ensemble(scene, V, *motion, rtol=1e-10)
+    found = scene.contact(V, delta=-2e-3, slopes=True)
+    motions = scene.ensemble(V, *motion, rtol=1e-10)
     for n, each in enumerate(cover):
         one = scene_on(each)
-        for name, value in vr.contact(one, V[n], delta=-2e-3, slopes=True).as_dict().items():
+        for name, value in one.contact(V[n], delta=-2e-3, slopes=True).as_dict().items():
             assert close(found[name][n], value, tol.COVER_EACH, what=name)
-        assert close(motions.V[n], vr.roll(one, V[n], *motion, rtol=1e-10).V, tol.COVER_EACH_MOTION)
+        assert close(motions.V[n], one.roll(V[n], *motion, rtol=1e-10).V, tol.COVER_EACH_MOTION)
 
 
 def test_a_load_each():
@@ -309,7 +309,7 @@ def test_pressure_of_a_cover_has_the_load_and_its_moment(scene, V):
     y = np.cos(nodes)
     weights = 0.5 * c.lam * np.sin(nodes) * np.pi / 400.0
     load = 1.0 / (32.0 * KAPPA)
-    p = vr.stress(scene, 0.5 * c.lam * (c.epsilon + y), V, delta=c.delta).p
+    p = scene.stress(0.5 * c.lam * (c.epsilon + y), V, delta=c.delta).p
     assert close(weights @ p, load, tol.COVER_PRESSURE)
     moment = 0.5 * c.lam * weights @ (p * (y + c.epsilon)) / (load * KAPPA)
     assert close(moment, c.M, tol.COVER_MOMENT, scale=max(abs(c.M), c.lam))
@@ -328,20 +328,7 @@ void states(int n, double kappa, double mu, const double *V, const double *slip,
   }
 }
 """  # noqa: E501
-C_FIELDS = [
-    "lam",
-    "epsilon",
-    "delta_star",
-    "delta_0",
-    "beta",
-    "Q",
-    "M",
-    "M_half_space",
-    "M_cylinder",
-    "dQ_dV",
-    "dQ_domega",
-    "dM_dV",
-]
+C_FIELDS = "lam epsilon delta_star delta_0 beta Q M M_half_space M_cylinder dQ_dV dQ_domega dM_dV"
 
 
 @c_code.needs_cc
@@ -358,17 +345,16 @@ def test_the_header_of_C_is_the_contact(covered, tmp_path):
         each.ravel()
         for each in np.meshgrid([*speeds, *-speeds], [-1.4, -0.6, -0.05, 1e-2, 0.3, 0.97, 1.2])
     )
-    limit = vr.contact(scene, V, delta=0.0)
+    limit = scene.contact(V, delta=0.0)
     omega = V * (1.0 + limit.delta_0 + part * limit.delta_star)
     slip = omega - V
     out = np.empty((V.size, 12))
     pointers = (ctypes.c_void_p(array.ctypes.data) for array in (V, slip, out))
     states(V.size, ctypes.c_double(scene.kappa), ctypes.c_double(scene.mu), *pointers)
-    known = vr.contact(scene, V, omega=omega, slopes=True, fields=C_FIELDS)
-    for name, values in zip(C_FIELDS, out.T, strict=True):
-        scale = (
-            np.abs(known[name]).max() if name in ("Q", "beta", "delta_0") else np.abs(known[name])
-        )
+    fields = C_FIELDS.split()
+    known = scene.contact(V, omega=omega, slopes=True, fields=fields)
+    for name, values in zip(fields, out.T, strict=True):
+        scale = abs(known[name]).max() if name in ("Q", "beta", "delta_0") else 0.0
         assert close(values, known[name], tol.COVER_IN_C, scale=scale, what=name)
 
 
@@ -378,16 +364,16 @@ def test_equilibria(scene):
     limit of slow rolling.
     """
     for force, torque in ((0.0, 0.004), (0.004, 0.0), (-0.197, 0.2)):
-        s = vr.steady(scene, force=force, torque=torque)
-        c = vr.contact(scene, s.V, omega=s.omega)
+        s = scene.steady(force=force, torque=torque)
+        c = scene.contact(s.V, omega=s.omega)
         known = [c.M_half_space - s.force, s.torque - c.M_cylinder, s.beta]
         assert close([c.Q, c.Q, c.beta], known, tol.COVER_STEADY, scale=1.0)
     still = free(scene, 0.0)
-    still = vr.contact(scene, 0.0, delta=still.delta_0 - 0.4 * still.delta_star)
+    still = scene.contact(0.0, delta=still.delta_0 - 0.4 * still.delta_star)
     force = still.M_half_space - still.Q
     torque = still.M_cylinder + still.Q
-    rest = vr.steady(scene, force=force, torque=torque)
-    slow = vr.steady(scene, V=1e-12, torque=torque)
+    rest = scene.steady(force=force, torque=torque)
+    slow = scene.steady(V=1e-12, torque=torque)
     assert rest.V[0] == 0.0
     assert close([rest.delta[0], slow.delta[0]], still.delta, tol.COVER_REST)
 
@@ -396,21 +382,20 @@ def test_a_thickness_in_SI_units():
     """A Material's thickness over l0 is that of the Cover; steel under it is nearly rigid; validity
     tells of it.
     """
-    steel = vr.Material.elastic(2e11, 0.3)
     thin = dataclasses.replace(THIN, prony=ONE)
     for material, base, on in (
         (RIGID, thin, "base"),
-        (thin, steel, "cylinder"),
+        (thin, STEEL, "cylinder"),
     ):
         roller = roller_of(material, base)
         found = roller.contact(1.0, delta=0.0)
         scene = roller.scene()
         assert scene.material.on == on
         plain = scene.replace(material=vr.Cover(ONE, nu=0.49, thickness=0.01 / roller.l0, on=on))
-        known = vr.contact(plain, 1.0 / roller.scale["V"], delta=0.0)
-        rel = tol.COVER_ON_STEEL if base is steel else tol.SCENE
+        known = plain.contact(1.0 / roller.scale["V"], delta=0.0)
+        rel = tol.COVER_ON_STEEL if base is STEEL else tol.SCENE
         for name in ("lam", "epsilon", "delta_star", "delta_0"):
-            assert close(found[name], known[name], rel=rel)
+            assert close(found[name], known[name], rel)
         thick = roller.validity(1.0).thick
         assert close(thick.value, 0.5 * found.length / 0.01, tol.CONTACT)
         assert thick.holds
@@ -420,7 +405,7 @@ def test_a_thickness_in_SI_units():
     # on a slope the load, and with it l0, is less: of a scene too
     tilted = roller.roll(0.0, 0.0, 0.3, slope=0.5).V[-1]
     of_scene = scene.roll(0.0, 0.0, 0.3 / roller.T_ref, slope=0.5).V[-1]
-    assert close(tilted, of_scene * roller.scale["V"], rel=1e-9)
+    assert close(tilted, of_scene * roller.scale["V"], 1e-9)
     thick = vr.Material(1e7, 0.3, ONE, 0.02, thickness=0.03)
     roller = roller_of(thick, THIN)
     cover = roller.scene().material

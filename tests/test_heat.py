@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from refusals import refused
 from scipy.integrate import trapezoid
 
 import viscoroll as vr
@@ -36,6 +37,15 @@ def ln_a_T(shift, theta):
 
 def with_shift(shift, **more):
     return ROLLER.replace(material=dataclasses.replace(RUBBER, shift=shift, **more))
+
+
+def balanced(found, ambient, conductance, share=1.0):
+    """Whether what is given off is what is lost, that of slip by half; of a rise of 1 mK at
+    least.
+    """
+    given_off = conductance * (found.temperature - ambient)
+    lost = share * (found.loss - 0.5 * found.loss_slip)
+    return close(given_off, lost, tol.HEAT_BALANCE, scale=1e-3 * conductance)
 
 
 # --- equilibria ---
@@ -76,9 +86,7 @@ def test_against_a_dense_scan():
         G = 10 ** rng.uniform(-0.5, 2.5)
         found = roller.temperature(V, ambient=A, conductance=G)
         share = 0.5 if like else 1.0
-        rise = found.temperature - A
-        # of a rise of 1 mK
-        assert close(G * rise, share * found.loss, tol.HEAT_BALANCE, scale=1e-3 * G)
+        assert balanced(found, A, G, share)
         assert found.count % 2
         assert found.stable.tolist() == [n % 2 == 0 for n in range(found.count)]
         free = partial(roller.contact, delta=0.0, fields="C_rr")
@@ -101,12 +109,11 @@ def test_heat_of_slip_and_given_loads():
     assert driven.loss_slip[0] > 0.0
     assert close(6.0 * (driven.temperature - 20.0), driven.loss, tol.HEAT_BALANCE)
     found = ROLLER.temperature(force=80.0, **COLD)
-    heat = found.loss - 0.5 * found.loss_slip
-    assert close(6.0 * (found.temperature + 30.0), heat, tol.HEAT_BALANCE, scale=6e-3)
+    assert balanced(found, **COLD)
     assert close(found.C_rr, 80.0 / 2e4, tol.HEAT_BALANCE)
     for V, theta in zip(found.V, found.temperature, strict=True):
         at_speed = ROLLER.temperature(V, torque=0.0, **COLD).temperature
-        assert np.abs(at_speed - theta).min() < 1e-7
+        assert abs(at_speed - theta).min() < 1e-7
 
 
 @pytest.mark.parametrize(
@@ -121,7 +128,7 @@ def test_vertical_shift_scales_the_moduli(base):
     hot = roller.replace(material=roller.material.at(float(found.temperature[0])))
     assert close(hot.material.E / 3e6, (found.temperature[0] + 273.15) / 293.15, 1e-15)
     assert close(found.C_rr[0], hot.contact(3.0, delta=0.0).C_rr, 1e-12)
-    assert close(6.0 * found.temperature, found.loss, tol.HEAT_BALANCE)
+    assert balanced(found, **MILD)
 
 
 def test_cover_follows_its_own_law():
@@ -132,8 +139,7 @@ def test_cover_follows_its_own_law():
     rolling = at.steady(V=2.0, torque=0.0)
     assert close(found.M, rolling.M, 1e-12)
     assert close(found.loss - found.loss_slip, rolling.loss.cylinder, 1e-12)
-    heat = found.loss - 0.5 * found.loss_slip
-    assert close(6.0 * found.temperature, heat, tol.HEAT_BALANCE)
+    assert balanced(found, **MILD)
 
 
 def test_two_bodies_with_a_temperature_each():
@@ -162,8 +168,8 @@ def test_units_are_converted():
     }
     found = ROLLER.temperature(pint.Quantity(18.0, "km/h"), **given)
     assert close(found.temperature, ROLLER.temperature(5.0, **WARM).temperature, 1e-12)
-    with pytest.raises(vr.ParameterError, match="must be in W"):
-        ROLLER.temperature(5.0, ambient=20.0, conductance=pint.Quantity(6.0, "kg"))
+    mass = {"ambient": 20.0, "conductance": pint.Quantity(6.0, "kg")}
+    refused(lambda: ROLLER.temperature(5.0, **mass), "must be in W")
 
 
 # --- warming ---
@@ -207,8 +213,7 @@ def test_limits_are_those_of_the_equilibria():
     assert cold.runaway
     assert (less.count, more.count) == (3, 1)
     # the lower two lie between nodes of the curve
-    rise = less.temperature - COLD["ambient"]
-    assert close(COLD["conductance"] * rise, less.loss, tol.HEAT_BALANCE)
+    assert balanced(less, **COLD)
     assert less.stable.tolist() == [True, False, True]
 
 
@@ -273,9 +278,7 @@ def test_conductance_of_film_and_cover():
     ],
 )
 def test_refused(call, words):
-    with pytest.raises(vr.ParameterError, match=words) as error:
-        call()
-    assert "\n" not in str(error.value)
+    refused(call, words)
 
 
 def test_beyond_the_ranges_is_named():
@@ -323,8 +326,8 @@ def test_run_file_with_uncertain_surroundings(tmp_path):
         )
     band = "measured = { low = 1e-3, high = 1e-2, misfit = 0.01 }\nT_ref"
     path.write_text(path.read_text().replace("T_ref", band))
-    with pytest.raises(vr.FileError, match=r"ambient = 15 gives no allowed temperature at V = 3 m"):
-        vr.runs.read_run(path)
+    words = "ambient = 15 gives no allowed temperature at V = 3 m"
+    refused(lambda: vr.runs.read_run(path), words, error=vr.FileError)
 
 
 # --- strain ---

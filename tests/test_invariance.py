@@ -65,35 +65,33 @@ def pairs_and_speeds():
 
 
 def rolled(scene, **given):
-    many = vr.ensemble(scene, t=T, rtol=1e-6, fields=FIELDS, **given)
+    many = scene.ensemble(t=T, rtol=1e-6, fields=FIELDS, **given)
     names = (*FIELDS, "onset_time", "rest_time", "status", "switches", "steps", "flow")
     return {name: getattr(many, name) for name in names}
 
 
 #: name -> arrays of states or starts, and the call of them
 CALLS = {
-    "states": (states, lambda **given: vr.contact(SCENE, **given, slopes=True).as_dict()),
+    "states": (states, lambda **given: SCENE.contact(**given, slopes=True).as_dict()),
     "two bodies": (
         lambda: {"V": np.concatenate([states()["V"][::40], [1e-140, 1e140]])},
-        lambda V: vr.contact(scene_of(UNLIKE), V, delta=1e-4, slopes=True).as_dict(),
+        lambda V: scene_of(UNLIKE).contact(V, delta=1e-4, slopes=True).as_dict(),
     ),
     "as printed": (
         lambda: {name: values[:1000:15] for name, values in states().items()},
-        lambda **given: vr.contact(SCENE, **given, method="direct").as_dict(),
+        lambda **given: SCENE.contact(**given, method="direct").as_dict(),
     ),
     "an alpha each": (
         states_of_alphas,
-        lambda V, delta, **scene: vr.contact(
-            vr.Scene(**scene), V, delta=delta, slopes=True
-        ).as_dict(),
+        lambda V, delta, **scene: vr.Scene(**scene).contact(V, delta=delta, slopes=True).as_dict(),
     ),
     "a pair each": (
         pairs_and_speeds,
-        lambda material, V: vr.contact(scene_of(material), V, delta=1e-3, slopes=True).as_dict(),
+        lambda material, V: scene_of(material).contact(V, delta=1e-3, slopes=True).as_dict(),
     ),
     "stress": (
         lambda: {name: values[:1000:40] for name, values in states().items()},
-        lambda **given: {k: v.T for k, v in vr.stress(SCENE, X, **given).as_dict().items()},
+        lambda **given: {k: v.T for k, v in SCENE.stress(X, **given).as_dict().items()},
     ),
     **{method: (starts, partial(rolled, SCENE, method=method)) for method in ("integrate", "flow")},
     "driven": (
@@ -129,7 +127,7 @@ def of(name, part=slice(None)):
 def everything():
     """All calls, a single motion and a table, as named arrays."""
     found = {f"{name}: {field}": value for name in CALLS for field, value in of(name).items()}
-    motion = vr.roll(SCENE, 1.5, 0.5, T)
+    motion = SCENE.roll(1.5, 0.5, T)
     found |= {f"roll: {name}": getattr(motion, name) for name in ("V", "omega", "x")}
     table = vr.tables.build(**GRID)
     found |= {f"table: {name}": values.values for name, values in table.data_vars.items()}

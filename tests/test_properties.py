@@ -85,23 +85,23 @@ def long_or_short(examples):
 @long_or_short(80)
 @given(scenes | arrays, one_or_three(speeds), one_or_three(creeps), st.booleans(), st.booleans())
 def test_contact(scene, V, creep, is_omega, slopes):
-    state = vr.contact(scene, V, **{"omega" if is_omega else "delta": creep}, slopes=slopes)
+    state = scene.contact(V, **{"omega" if is_omega else "delta": creep}, slopes=slopes)
     for name, values in state.as_dict().items():
         assert not np.isnan(values).any(), name
     for name in state.as_dict().keys() - {"zeta", "delta", "dQ_domega", "dQ_dV"}:
         assert np.isfinite(state[name]).all(), name
-    assert np.all(np.abs(state.Q) <= scene.mu)
-    assert np.all((np.asarray(state.beta) >= 0.0) & (np.asarray(state.beta) <= 1.0))
-    assert np.all(np.asarray(state.lam) <= 1.0)
+    assert np.all(abs(state.Q) <= scene.mu)
+    assert np.all((state.beta >= 0.0) & (state.beta <= 1.0))
+    assert np.all(state.lam <= 1.0)
 
 
 @long_or_short(80)
 @given(scenes, one_or_three(speeds), one_or_three(speeds), creeps, st.booleans())
 def test_stress_and_validity(scene, x, V, creep, is_omega):
-    found = vr.stress(scene, x, V, **{"omega" if is_omega else "delta": creep})
+    found = scene.stress(x, V, **{"omega" if is_omega else "delta": creep})
     assert np.isfinite([found.p, found.tau]).all()
-    assert np.all(np.asarray(found.p) >= 0.0)
-    assert np.all(np.abs(found.tau) <= scene.mu * np.asarray(found.p) * (1.0 + 1e-15))
+    assert np.all(found.p >= 0.0)
+    assert np.all(abs(found.tau) <= scene.mu * found.p * (1.0 + 1e-15))
     assert str(scene.validity(V))
 
 
@@ -117,11 +117,11 @@ def test_stress_and_validity(scene, x, V, creep, is_omega):
 )
 def test_motion(scene, V0, omega0, t, rtol, rest, method):
     options = {"rtol": rtol, "rest": rest, "max_steps": STEPS}
-    many = vr.ensemble(scene, V0, omega0, t, method=method, fields=FIELDS, **options)
+    many = scene.ensemble(V0, omega0, t, method=method, fields=FIELDS, **options)
     assert set(many.status) <= ENDED
     for name in ("V", "omega", "x", "angle"):
         assert np.isfinite(getattr(many, name)).all(), name
-    one = vr.roll(scene, V0, omega0, t, **options)
+    one = scene.roll(V0, omega0, t, **options)
     assert one.status == many.status[0] or method != "integrate"
 
 
@@ -140,13 +140,13 @@ far = st.builds(vr.Scene, alphas, **widest) | st.builds(vr.Scene, material=serie
 def test_the_ends_of_the_ranges(scene, V, creep, share):
     """An answer or a refusal without a warning of numpy, which the suite takes as an error."""
     calls = (
-        lambda: vr.contact(scene, V, delta=creep, slopes=True),
-        lambda: vr.contact(scene, V, omega=V * (1.0 + share)),
-        lambda: vr.law(scene)(V, V * (1.0 + share), slopes=True),
-        lambda: vr.steady(scene, V=V, torque=share * scene.mu),
-        lambda: vr.steady(scene, force=share * scene.mu),
-        lambda: str(vr.validity(scene, V)),
-        lambda: vr.stress(scene, [-1.0, 0.0, 1e-3], V, delta=creep),
+        lambda: scene.contact(V, delta=creep, slopes=True),
+        lambda: scene.contact(V, omega=V * (1.0 + share)),
+        lambda: scene.law()(V, V * (1.0 + share), slopes=True),
+        lambda: scene.steady(V=V, torque=share * scene.mu),
+        lambda: scene.steady(force=share * scene.mu),
+        lambda: str(scene.validity(V)),
+        lambda: scene.stress([-1.0, 0.0, 1e-3], V, delta=creep),
     )
     for call in calls:
         with contextlib.suppress(vr.ParameterError):

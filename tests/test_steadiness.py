@@ -21,7 +21,7 @@ UNLIKE = ROLLER.replace(material=vr.Bodies(DMA, vr.Prony([4.0], [3e-3]), 0.3))
 
 def law(scene, V):
     """gamma N/(1 + j) and gamma M/(1 + j)."""
-    c = vr.contact(scene, V, delta=0.0, fields=("N", "M"))
+    c = scene.contact(V, delta=0.0, fields=("N", "M"))
     g = scene.gamma / (1.0 + scene.j)
     return g * c.N, g * c.M
 

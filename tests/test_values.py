@@ -64,7 +64,6 @@ def test_labels_of_xarray_and_pandas():
         steady = b.steady(slope=0.0001 * LABELLED)
         of_labels = b.contact(LABELLED, delta=xr.DataArray([0.0, 0.01], dims="creep"))
         of_frame = b.contact(FRAME["V"], delta=FRAME["delta"])
-        assert of_labels.M.dims == ("run", "creep")
         assert of_labels.to_xarray()["M"].dims == ("run", "creep")
         assert np.array_equal(of_labels.M.sel(run="b"), b.contact(0.2, delta=[0.0, 0.01]).M)
         assert of_frame.M["y"] == b.contact(0.2, delta=0.01).M
@@ -83,23 +82,23 @@ def test_labels_of_xarray_and_pandas():
 
 def test_slopes_and_states_at_rest():
     """V = 0: slopes, and a slow rate, (1 + j) V' = -M' V at last, M' = 1 - 1/alpha."""
-    at_rest = vr.contact(PAPER, 0.0, delta=0.0, slopes=True)
+    at_rest = PAPER.contact(0.0, delta=0.0, slopes=True)
     elastic = vr.Scene(1.0, 2.91, 0.2)
     assert close((at_rest.dQ_ddelta, at_rest.dM_dV), (4.0 * 2.91, 10.0 / 11.0), 1e-15)
-    assert vr.contact(PAPER, 0.0, omega=0.0, slopes=True).dQ_domega == inf
+    assert PAPER.contact(0.0, omega=0.0, slopes=True).dQ_domega == inf
     # one ULP below delta_star, where D is rounded to that of full slip: neither 0/0 nor a slope
     # of partial slip
     s = vr.Scene(8.69, 3.768, 0.052)
     below = np.nextafter(s.contact(0.0, delta=0.0).delta_star, 0.0)
     assert s.contact(0.0, delta=below, slopes=True).dQ_domega == 0.0
-    assert vr.contact(PAPER, [1.0, -1.0], delta=1.0, slopes=True).dQ_ddelta.tolist() == [0.0, 0.0]
-    assert close(vr.steady(PAPER, force=1e-100).V[0], 1.1e-100, tol.STEADY)
-    s = vr.steady(PAPER)
+    assert PAPER.contact([1.0, -1.0], delta=1.0, slopes=True).dQ_ddelta.tolist() == [0.0, 0.0]
+    assert close(PAPER.steady(force=1e-100).V[0], 1.1e-100, tol.STEADY)
+    s = PAPER.steady()
     assert [*s.V, *s.omega, *s.stable] == [0.0, 0.0, True]
     assert close(s.eigenvalues[0].real, [-inf, -(10.0 / 11.0) / 1.5], tol.STEADY)
     # held by a force of mu, a motor spins at the speed at which its torque is mu; its gain over
     # j, and -M_half_space'
-    s = vr.steady(PAPER, force=-0.2, torque=vr.Feedback(0.5, omega=-1.0))
+    s = PAPER.steady(force=-0.2, torque=vr.Feedback(0.5, omega=-1.0))
     assert [*s.V, *s.Q, *s.grip, *s.stable] == [0.0, 0.2, 0.0, True]
     assert close(
         (s.omega[0], s.loss.slip[0], *s.eigenvalues[0].real),
@@ -107,26 +106,26 @@ def test_slopes_and_states_at_rest():
         tol.STEADY,
     )
     # an elastic cylinder: a motor, a prescribed speed, no humps
-    assert close(vr.steady(elastic, torque=vr.Feedback(0.3, omega=-1.0)).V, [0.3], tol.STEADY)
-    assert close(vr.steady(elastic, V=1.0, torque=0.1).force, [-0.1], tol.STEADY)
-    assert vr.resistance_extrema(elastic).V.size == 0
+    assert close(elastic.steady(torque=vr.Feedback(0.3, omega=-1.0)).V, [0.3], tol.STEADY)
+    assert close(elastic.steady(V=1.0, torque=0.1).force, [-0.1], tol.STEADY)
+    assert elastic.resistance_extrema().V.size == 0
 
 
 def test_a_prescribed_speed_finds_the_other_load():
     """Steady: a prescribed speed finds the other load."""
     V = [-0.5, -0.1, 0.0, 0.1, 0.5]
-    rolling = vr.steady(PAPER, V=V, torque=0.0)
-    pushed = vr.steady(PAPER, V=V, force=0.01)
-    down = vr.steady(PAPER, V=0.1, slope=-0.02)
+    rolling = PAPER.steady(V=V, torque=0.0)
+    pushed = PAPER.steady(V=V, force=0.01)
+    down = PAPER.steady(V=0.1, slope=-0.02)
     assert rolling.V[:, 0].tolist() == V
     assert close(rolling.force, rolling.M, tol.STEADY, scale=1.0)
     assert close(rolling.Q, -0.5 * rolling.M, tol.STEADY, scale=1.0)
     assert close(pushed.torque, pushed.M - 0.01, tol.STEADY)
     assert close(down.torque[0], down.M[0] + math.tan(0.02), tol.STEADY)
-    assert vr.steady(PAPER, V=0.1, torque=-0.3).count == 0
+    assert PAPER.steady(V=0.1, torque=-0.3).count == 0
     # a gain that unsettles rest: M < c V, c = 1 - 1/alpha; the gain alone holds a speed where it
     # is below c
     for share, stable, count in ((0.99, True, 3), (1.01, False, 1)):
         force, torque = (vr.Feedback(0.0, V=part * share / 1.1) for part in (0.6, 0.4))
-        s = vr.steady(PAPER, force=force, torque=torque)
+        s = PAPER.steady(force=force, torque=torque)
         assert (s.V[0], s.stable[0], s.count) == (0.0, stable, count)

@@ -95,7 +95,7 @@ SPEED_LIMIT = 1e-10
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 
-# --- laws/law_table.py (test_law_axis.py) ---
+# --- laws/law_table.py (test_law.py) ---
 #: M/V, eta/F and H/F^2 by the axis of alpha, relative; measured 4.9e-15.
 AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.
@@ -142,10 +142,6 @@ VANISHED = 1e-4
 #: The second stick of the brief's example, printed to 9 digits.
 RETURN_TIME = 3e-9
 
-# --- full slip (test_slide.py) ---
-#: Closed forms of the elastic cylinder, over the speed and the duration: roundings.
-SLIDE = 1e-14
-
 # --- sampling.py (test_ensemble.py) ---
 #: Kolmogorov-Smirnov p-value of a recorded seed: fixed, so no chance of a false alarm.
 KOLMOGOROV = 0.01
@@ -165,7 +161,7 @@ VALIDATION_WRONG = 1e-4
 #: Numbers read back from a drawn line: as computed, but for the factor of the axis.
 FIGURE = 1e-12
 
-# --- the benchmark that is kept (test_bench.py) ---
+# --- the benchmark that is kept (test_kept.py) ---
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
 #: A number in six digits, and what depends on such a one.
@@ -197,7 +193,7 @@ MEMORY_SLACK = 8_000_000
 #: What the last subnormals cannot hold: a few of their spacings.
 PROVEN_SUBNORMAL = 4e-323
 
-# --- planted defects (test_mutants.py) ---
+# --- planted defects (test_kept.py) ---
 # Share of them that the tests must notice, as pipeline/evidence/mutate.py asks; 52 of the first 54
 # were.
 MUTANTS_KILLED = 0.95

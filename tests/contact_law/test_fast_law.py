@@ -20,11 +20,11 @@ ONE, THREE = (covers.MATERIALS[name] for name in ("one", "three"))
 def test_no_state_makes_energy(index):
     _, scene, _ = covers.scenes()[index]
     V = np.logspace(-4.0, 1.0, 6)[:, None]
-    s = vr.steady(scene, V=V, torque=scene.mu * np.linspace(-0.99, 0.99, 23))
+    s = scene.steady(V=V, torque=scene.mu * np.linspace(-0.99, 0.99, 23))
     parts = np.stack([s.loss.slip, s.loss.half_space, s.loss.cylinder])
     assert np.nanmin(parts) >= -tol.COVER_ENERGY
     power = s.force * s.V + s.torque * s.omega
-    assert close(parts.sum(axis=0), power, rel=tol.COVER_ENERGY, scale=1.0)
+    assert close(parts.sum(axis=0), power, tol.COVER_ENERGY, scale=1.0)
     assert np.nanmax(s.loss.efficiency) <= 1.0
 
 
@@ -33,17 +33,17 @@ def test_onsets_lie_unlike_far_from_free_rolling(index):
     """As in the coupled solution, and full slip begins there, of motions of either direction."""
     _, scene, u = covers.scenes()[index]
     V = u / covers.KAPPA
-    found = vr.contact(scene, V, delta=0.0, fields=("delta_minus", "delta_plus", "delta_star"))
+    found = scene.contact(V, delta=0.0, fields=("delta_minus", "delta_plus", "delta_star"))
     true = covers.CoupledRow(covers.CoupledPair.of_scene(scene), u, float(scene.mu)).onsets()
     onsets = np.array([found.delta_minus, found.delta_plus])
     exact = 0.5 * np.array(true) / covers.KAPPA
-    assert close(onsets, exact, rel=tol.COVER_ONSETS, scale=found.delta_star)
+    assert close(onsets, exact, tol.COVER_ONSETS, scale=found.delta_star)
     ends = np.array([-1.0, 1.0])
     beside = onsets + found.delta_star * 1e-6 * np.outer([1.0, -1.0], ends)
     for sign in ends:
-        slips = vr.contact(scene, sign * V, delta=beside)
+        slips = scene.contact(sign * V, delta=beside)
         assert slips.full_slip.tolist() == [[True, True], [False, False]]
-        assert close(slips.Q, [sign * scene.mu * ends] * 2, rel=tol.COVER_ENDS)
+        assert close(slips.Q, [sign * scene.mu * ends] * 2, tol.COVER_ENDS)
 
 
 def test_the_same_nip_has_the_same_losses():
@@ -54,11 +54,11 @@ def test_the_same_nip_has_the_same_losses():
     nips = (vr.Cover(THREE, on=on, **layer) for on in ("base", "cylinder"))
     one, two = (vr.Scene(material=nip, kappa=1e6, mu=0.3, coupled=False) for nip in nips)
     V = np.array([[1e-8], [1e-7], [1e-6]])
-    s = vr.steady(one, V=V, torque=0.3 * np.linspace(-0.9, 0.9, 7))
-    turned = vr.steady(two, V=s.omega[..., 0], torque=s.force[..., 0])
+    s = one.steady(V=V, torque=0.3 * np.linspace(-0.9, 0.9, 7))
+    turned = two.steady(V=s.omega[..., 0], torque=s.force[..., 0])
     mine = np.stack([s.loss.slip, s.loss.half_space, s.loss.cylinder])
     other = np.stack([turned.loss.slip, turned.loss.cylinder, turned.loss.half_space])
-    assert close(mine / V[..., None], other / V[..., None], rel=tol.COVER_NAMES, scale=1e-6)
+    assert close(mine / V[..., None], other / V[..., None], tol.COVER_NAMES, scale=1e-6)
 
 
 def test_the_line_of_rest():
@@ -67,16 +67,16 @@ def test_the_line_of_rest():
     """
     belt = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
     scene = vr.Scene(material=belt, kappa=4.0, mu=0.3, gamma=0.5, coupled=False)
-    limit = vr.contact(scene, 0.0, delta=0.0, fields=("delta_0", "delta_star"))
-    state = vr.contact(
-        scene, 0.0, delta=limit.delta_0 + limit.delta_star * np.array([-0.6, -0.01, 0.01, 0.5])
+    limit = scene.contact(0.0, delta=0.0)
+    state = scene.contact(
+        0.0, delta=limit.delta_0 + limit.delta_star * np.array([-0.6, -0.01, 0.01, 0.5])
     )
     lever = state.M_half_space / -state.Q
-    assert close(lever[1:3], limit.delta_0, rel=tol.COVER_REST_LEVER, scale=1.0)
+    assert close(lever[1:3], limit.delta_0, tol.COVER_REST_LEVER, scale=1.0)
     force = state.M_half_space - state.Q
-    assert close(force + (1.0 + lever) * state.Q, 0.0, rel=tol.COVER_ENERGY, scale=1.0)
+    assert close(force + (1.0 + lever) * state.Q, 0.0, tol.COVER_ENERGY, scale=1.0)
     for push in (-0.01, 0.0, 0.01):
-        moved = vr.ensemble(scene, 0.0, 0.0, 5.0, force=force + push, torque=state.Q)
+        moved = scene.ensemble(0.0, 0.0, 5.0, force=force + push, torque=state.Q)
         assert (np.sign([moved.V, moved.omega]) == np.sign(push)).all()
 
 
@@ -97,6 +97,6 @@ def test_motions_solve_the_equations_by_the_law():
     """Both onsets lie unlike far, and change with the speed."""
     layer = vr.Cover(ONE, nu=0.3, thickness=0.5, on="base")
     scene = vr.Scene(material=layer, kappa=4.0, mu=0.3, gamma=1.0, j=0.5, coupled=False)
-    exact = solved(scene, 1.0, 1.0, 4.0, torque=-0.1)
+    exact = solved(scene, 1.0, 1.0, [4.0], torque=-0.1)
     motion = scene.roll(1.0, 1.0, [4.0], torque=-0.1, rtol=1e-10)
-    assert close((motion.V[0], motion.omega[0]), exact, tol.COVER_MOTION)
+    assert close((motion.V, motion.omega), exact, tol.COVER_MOTION)

@@ -3,7 +3,6 @@ says.
 """
 
 import json
-import re
 
 import numpy as np
 import pytest
@@ -31,20 +30,11 @@ def test_the_page_states_what_is_kept():
     down.
     """
     page = (DOCS / "validity_covers.md").read_text()
-    cells = [
-        re.findall(r"[\d.]+", line)
-        for line in re.findall(r"^\| \d\.\d+ \|(?: \d\.\d\d \|)+$", page, re.M)
-    ]
-    stated = [list(map(float, line)) for line in cells if len(line) == 2 + len(ROWS[0]["shorter"])]
-    assert stated == [
-        [row["nu"], *(round(v, 2) for v in (*row["shorter"].values(), row["limit"]))]
-        for row in ROWS
-    ]
     for row in ROWS:
-        kept = [
-            *((float(length), by) for length, by in row["shorter"].items()),
-            (row["limit"], 0.95),
-        ]
+        numbers = *row["shorter"].values(), row["limit"]
+        assert f"| {row['nu']} | {' | '.join(f'{v:.2f}' for v in numbers)} |\n" in page
+        kept = [(float(length), by) for length, by in row["shorter"].items()]
+        kept.append((row["limit"], 0.95))
         for length, by in kept:
             assert close(layer.load(2.0 / (length * by), row["nu"]) * by**2, 1.0, tol.LAYER_KEPT)
     least = min(row["limit"] for row in ROWS)

@@ -1,6 +1,5 @@
 """What the proofs are made of; the claims themselves are in tests/test_claims.py."""
 
-from pipeline.evidence.prove.__main__ import TABLE
 from pipeline.evidence.prove.cases import VALUES
 from pipeline.evidence.truth import INPUTS, contact_enclosure
 from pipeline.stage import read_rows
@@ -12,11 +11,3 @@ def test_check_values_are_the_doubles_nearest_to_enclosures():
         exact = contact_enclosure(*(row[name] for name in INPUTS))
         found = {name: float(value) for name, value in exact.items() if name in row}
         assert row == row | found
-
-
-def test_draws_of_a_proof_are_its_own():
-    """They follow from a key that no other proof has."""
-    assert len({proof.key() for proof in TABLE}) == len(TABLE)
-    first = [proof.random(1).integers(1 << 62) for proof in TABLE]
-    assert len(set(first)) == len(TABLE)
-    assert [proof.random(1).integers(1 << 62) for proof in TABLE[::-1]] == first[::-1]

@@ -23,12 +23,12 @@ def test_how_a_schedule_is_written():
     drive.
     """
     number, piece = (
-        vr.roll(ROLLER, 0.2, 0.2, T, torque=q).V for q in (0.05, vr.Schedule([0.0], [0.05]))
+        ROLLER.roll(0.2, 0.2, T, torque=q).V for q in (0.05, vr.Schedule([0.0], [0.05]))
     )
     assert np.array_equal(number, piece)
     cut = vr.Schedule([0.0, 1.3, 5.0, 8.0], [0.0, 0.013, 0.05, 0.08])
     ramp, *others = (
-        vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=q)
+        ROLLER.roll(0.2, 0.2, T, rtol=1e-9, torque=q)
         for q in (vr.Schedule([0.0, 8.0], [0.0, 0.08]), cut, lambda t: 0.01 * t)
     )
     assert all(speed_error(other, ramp, so_far=True).max() <= 30e-9 for other in others)
@@ -40,7 +40,7 @@ def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
     turn it on.
     """
     t = np.linspace(0.0, 2.0, 41)
-    m = vr.roll(ROLLER, 2.0, -0.1, t, brake=share * ROLLER.mu)
+    m = ROLLER.roll(2.0, -0.1, t, brake=share * ROLLER.mu)
     omega = m.omega[t >= 0.25]  # it comes to 0 at 0.20, and at 0.15
     assert (omega > 0.0).all() if share < 1.0 else not omega.any()
     assert [s.regime for s in m.switches] == ([] if share < 1.0 else ["locked"])
@@ -54,8 +54,8 @@ def test_the_end_of_a_motion_of_bodies_that_differ():
     modes = vr.Prony(E=[3.0] * 10, tau=10.0 ** np.arange(-9, 1))
     on_steel = vr.Bodies(cylinder=modes, base=vr.Prony.elastic(), share=1.0)
     scene = vr.Scene(material=on_steel, kappa=2.91, mu=0.2, gamma=100.0)
-    m = vr.roll(scene, 1.0, 0.0, [0.3, 0.5, 1.0, 2.0, 10.0])
-    like = vr.roll(scene.replace(material=modes), 1.0, 0.0, m.t)
+    m = scene.roll(1.0, 0.0, [0.3, 0.5, 1.0, 2.0, 10.0])
+    like = scene.replace(material=modes).roll(1.0, 0.0, m.t)
     assert m.steps <= 1.5 * like.steps
     fell = np.diff(np.log(m.V[1:4]))  # in 0.5 and 1
     assert close(fell[1], 2.0 * fell[0], 1e-9)
@@ -67,9 +67,9 @@ def test_traction_of_the_smallest_creep(V):
     """The force that a prescribed V asks for is M/2 - Q, and Q what the contact says of creep that
     is nearly none.
     """
-    edge = vr.contact(PAPER, V, delta=0.0).delta_star
+    edge = PAPER.contact(V, delta=0.0).delta_star
     for share in (-9e-5, 3e-5, 9e-5):
         omega = V * (1.0 + share * edge)
-        state = vr.contact(PAPER, V, omega=omega)
-        held = vr.roll(PAPER, None, omega, [0.0, 1e-9], V=V)
+        state = PAPER.contact(V, omega=omega)
+        held = PAPER.roll(None, omega, [0.0, 1e-9], V=V)
         assert close(0.5 * state.M - held.force[0], state.Q, tol.SMALL_TRACTION)

@@ -7,7 +7,6 @@ from functools import partial
 
 import numpy as np
 import tolerances as tol
-import xarray as xr
 from closeness import close
 from drives import PAPER, ROLLER
 from refusals import refused
@@ -22,33 +21,32 @@ ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss", "slip_lo
 T = np.linspace(0.0, 4.0, 9)
 
 
-def test_a_motion_carries_its_drive(tmp_path):
-    """Whatever kind it is: a number, times and values, a callable, gains; what was not given is not
-    there.  Other times keep it.
+def test_a_motion_carries_its_drive():
+    """In its dataset, whatever kind it is: a number, times and values, a callable, gains; what was
+    not given is not there.  Other times keep it.
     """
     drive = {"force": np.cos, "torque": vr.Feedback(RAMP, omega=-0.1), "slope": -0.5}
-    m = vr.roll(ROLLER, 0.2, 0.0, T, **drive)
-    same = vr.roll(ROLLER, 0.2, 0.0, 4.0, **drive).at(T)
-    m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
-    with xr.open_dataset(tmp_path / "m.nc", engine="h5netcdf", decode_times=False) as data:
-        for name in ("V", "omega", *ACTING):
-            assert np.array_equal(data[name].values, m[name])
-            assert np.array_equal(same[name], m[name])
-        assert data.attrs["drive_force"] == "a function of t"
-        assert data.attrs["drive_error"] == m.drive_error > 0.0
-        assert data["drive_torque"].values.tolist() == RAMP.values.tolist()
-        assert data["drive_torque_time"].values.tolist() == RAMP.times.tolist()
-        assert data["drive_torque"].attrs["gain_omega"] == -0.1
-        assert data["drive_slope"].item() == -0.5
-        assert data.attrs["kappa"] == m.scene.kappa > ROLLER.kappa
-        assert np.array_equal(data["reversals"].values, m.reversals)
-        assert m.reversals.size > 0
-        assert "drive_brake" not in data
+    m = ROLLER.roll(0.2, 0.0, T, **drive)
+    same = ROLLER.roll(0.2, 0.0, 4.0, **drive).at(T)
+    data = m.to_xarray()
+    for name in ("V", "omega", *ACTING):
+        assert np.array_equal(data[name], m[name])
+        assert np.array_equal(same[name], m[name])
+    assert data.attrs["drive_force"] == "a function of t"
+    assert data.attrs["drive_error"] == m.drive_error > 0.0
+    assert data["drive_torque"].values.tolist() == RAMP.values.tolist()
+    assert data["drive_torque_time"].values.tolist() == RAMP.times.tolist()
+    assert data["drive_torque"].attrs["gain_omega"] == -0.1
+    assert data["drive_slope"].item() == -0.5
+    assert data.attrs["kappa"] == m.scene.kappa > ROLLER.kappa
+    assert np.array_equal(data["reversals"], m.reversals)
+    assert m.reversals.size > 0
+    assert "drive_brake" not in data
 
 
 def test_an_ensemble_carries_its_drives():
     steps = vr.Schedule(RAMP.times, [[0.0, 0.2, 0.0], [0.0, 0.1, 0.0]])
-    e = vr.ensemble(ROLLER, 0.0, 0.0, T, torque=steps, slope=[0.01, 0.02], fields=ACTING)
+    e = ROLLER.ensemble(0.0, 0.0, T, torque=steps, slope=[0.01, 0.02], fields=ACTING)
     data = e.to_xarray()
     assert data["drive_torque"].dims == ("motion", "drive_torque_time")
     assert data["drive_slope"].values.tolist() == [0.01, 0.02]
@@ -77,7 +75,7 @@ def test_a_jump_of_one_slow_motion_is_refused_beside_fast_ones():
     speeds = vr.Schedule(
         [[0.0, 1.0, 2.0], [0.0, 1.0, 1.0]], [[1.0, 2.0, 3.0], [1e-13, 1e-13, 3e-13]]
     )
-    refused(lambda: vr.ensemble(ROLLER, None, 0.2, 3.0, V=speeds), "V jumps at t = 1: must be")
+    refused(lambda: ROLLER.ensemble(None, 0.2, 3.0, V=speeds), "V jumps at t = 1: must be")
 
 
 # --- rest ---
@@ -87,7 +85,7 @@ def test_a_later_pulse_is_waited_for():
     """Pulses on [0, 1] and [20, 25]: between them V falls to a thousandth of the threshold."""
     push = 0.05 * np.array([0.0, 1.0, 1.0, 0.0])
     pulses = vr.Schedule(np.repeat([0.0, 1.0, 20.0, 25.0], 2), [*push, *push])
-    m, whole = (vr.roll(PAPER, 0.0, 0.0, LATE, force=pulses, rest=rest) for rest in (1e-3, None))
+    m, whole = (PAPER.roll(0.0, 0.0, LATE, force=pulses, rest=rest) for rest in (1e-3, None))
     assert m.status == vr.MotionStatus.RESTED
     assert m.rest_time > 25.0
     before = m.rest_time > LATE
@@ -101,10 +99,10 @@ def test_force_after_rest_is_what_is_given():
     does.
     """
     force = vr.Schedule([[0.0, 5.0], [0.0, 2.0]], [[0.004, 0.0], [0.002, 0.0]])
-    e = vr.ensemble(PAPER, 0.05, 0.05, LATE, force=force, rest=0.045, fields=("V", "force"))
+    e = PAPER.ensemble(0.05, 0.05, LATE, force=force, rest=0.045, fields=("V", "force"))
     assert np.array_equal(e.rest_time, [5.0, 2.0])
     assert close(e.force[0], np.interp(LATE, [0.0, 5.0], [0.004, 0.0]), 1e-15, scale=0.004)
     assert not e.V[1, LATE >= 2.0].any()
-    m = vr.roll(PAPER, 0.05, 0.05, LATE, force=vr.Schedule([0.0, 5.0], [0.004, 0.0]), rest=0.045)
+    m = PAPER.roll(0.05, 0.05, LATE, force=vr.Schedule([0.0, 5.0], [0.004, 0.0]), rest=0.045)
     assert m.rest_time == 5.0
     assert np.array_equal(m.force, e.force[0])

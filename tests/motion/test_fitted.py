@@ -50,10 +50,10 @@ def test_a_callable_is_met_in_few_values(name, rtol):
     """
     function = Counted(CALLABLES[name])
     t = np.sort(np.random.default_rng(3).uniform(0.0, END, 2000))
-    m = vr.roll(ROLLER, 0.5, 0.5, t, rtol=rtol, torque=function)
+    m = ROLLER.roll(0.5, 0.5, t, rtol=rtol, torque=function)
     assert function.calls <= tol.CALLABLE_VALUES
     exact = np.array([function(one) for one in t])
-    so_far = np.maximum.accumulate(np.abs(exact))
+    so_far = np.maximum.accumulate(abs(exact))
     largest = so_far[-1]
     least = max(tol.CALLABLE_FOOT, tol.CALLABLE_ROUNDING / rtol) * largest
     share = tol.CALLABLE_SHARE * rtol
@@ -90,7 +90,7 @@ def test_a_narrow_pulse_is_seen_where_it_is_resolved(roll):
     seen = roll(ROLLER, 0.1, 0.1, [END], torque=pulse, resolve=0.5 * width).V
     assert np.array_equal(missed, free)
     assert close(seen, exact, tol.CALLABLE_PULSE)
-    assert np.abs(exact - free).min() > tol.CALLABLE_PULSE_ACTS * np.abs(exact).max()
+    assert abs(exact - free).min() > tol.CALLABLE_PULSE_ACTS * abs(exact).max()
 
 
 @pytest.mark.parametrize("name", ["tanh", "Gauss pulse", "exp(-1/t)", "half waves"])
@@ -98,10 +98,9 @@ def test_speeds_prescribed_by_callables(name):
     """omega is what was prescribed, at every tolerance, and the motion that at a tight one."""
     t = np.linspace(0.0, END, 41)
     exact = np.array([CALLABLES[name](one) for one in t])
-    best = vr.roll(ROLLER, 0.0, None, t, rtol=1e-12, omega=CALLABLES[name])
+    best = ROLLER.roll(0.0, None, t, rtol=1e-12, omega=CALLABLES[name])
     for rtol in (1e-2, 1e-8):
-        m = vr.roll(ROLLER, 0.0, None, t, rtol=rtol, omega=CALLABLES[name])
-        assert m.success
+        m = ROLLER.roll(0.0, None, t, rtol=rtol, omega=CALLABLES[name])
         assert m.steps < tol.CALLABLE_STEPS
-        assert close(m.omega, exact, rtol, scale=np.abs(exact).max())
-        assert close(m.V, best.V, rtol, scale=np.abs(exact).max())
+        assert close(m.omega, exact, rtol, scale=abs(exact).max())
+        assert close(m.V, best.V, rtol, scale=abs(exact).max())

@@ -58,8 +58,8 @@ def test_as_the_integrator_to_its_stated_error(name):
     scene, top = SCENES[name]
     V0, omega0 = starts(40, 2, scene, top)
     t = np.concatenate([np.geomspace(1e-7, 1e-1, 7), [1.0, 10.0, 200.0]]) * decay_time(scene)
-    mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
-    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
+    mapped = scene.ensemble(V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
+    rolled = scene.ensemble(V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
     assert mapped.success.all()
     assert np.array_equal(mapped.switches, rolled.switches)
     earliest = 6e-3 * decay_time(scene)
@@ -67,9 +67,9 @@ def test_as_the_integrator_to_its_stated_error(name):
     by = mapped.flow
     assert np.array_equal(mapped.regime[by], rolled.regime[by])
     assert by.mean() > 0.9
-    built = flow.flow_map(scene, max(np.abs(V0).max(), np.abs(omega0).max()))
-    speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
-    moved = np.maximum.accumulate(np.maximum(np.abs(rolled.x), np.abs(rolled.angle)), axis=1)
+    built = flow.flow_map(scene, max(abs(V0).max(), abs(omega0).max()))
+    speed = np.maximum(abs(rolled.V), abs(rolled.omega))
+    moved = np.maximum.accumulate(np.maximum(abs(rolled.x), abs(rolled.angle)), axis=1)
     # what is left to rest is at most V times the decay time
     path = moved + 1e-5 * decay_time(scene) * speed[:, :1]
     energy = np.broadcast_to(0.5 * (V0**2 + scene.j * omega0**2)[:, None], path.shape)
@@ -85,7 +85,7 @@ def deep():
     """Starts over 15 octaves of speed, and at outputs from a hundredth of the boundary layer on."""
     rng = np.random.default_rng(11)
     V0 = 2.0 ** rng.uniform(-14.0, 1.0, 200) * rng.choice([-1.0, 1.0], 200)
-    star = vr.contact(PAPER, V0, delta=0.0).delta_star
+    star = PAPER.contact(V0, delta=0.0).delta_star
     omega0 = V0 * (1.0 + star * rng.uniform(-1.0, 1.0, 200))
     return PAPER, V0, omega0, np.array([1e-2, 1e-1, 1.0, 10.0]) * 2.0**-5 / PAPER.kappa
 
@@ -141,7 +141,7 @@ def test_rest(rest):
     omega0[:2] = -1e-4
     t = np.linspace(0.0, 2e-2, 9)
     mapped, rolled = (
-        vr.ensemble(SCENE, V0, omega0, t, rest=rest, method=method, fields=FIELDS, rtol=rtol)
+        SCENE.ensemble(V0, omega0, t, rest=rest, method=method, fields=FIELDS, rtol=rtol)
         for method, rtol in (("flow", 1e-8), ("integrate", 1e-11))
     )
     assert mapped.flow.any() or rest >= 1.0
@@ -180,7 +180,7 @@ BEYOND = {
 def test_motions_beyond_the_map_are_integrated(name):
     scene, *start, mapped_ones = BEYOND[name]
     mapped, rolled = (
-        vr.ensemble(scene, *start, [1e-9, 3e-3], method=method) for method in ("flow", "integrate")
+        scene.ensemble(*start, [1e-9, 3e-3], method=method) for method in ("flow", "integrate")
     )
     assert name not in ("elastic", "steady speed") or name in mapped.flow_problem
     assert mapped.flow.tolist() == mapped_ones
@@ -190,13 +190,13 @@ def test_motions_beyond_the_map_are_integrated(name):
 
 def test_auto():
     V0, omega0 = starts(FLOW_PAYS, 10, SCENE)
-    assert not vr.ensemble(SCENE, V0[1:], omega0[1:], 1e-3).flow.any()
-    assert vr.ensemble(SCENE, V0, omega0, 1e-3).flow.mean() > 0.99
-    tight = vr.ensemble(SCENE, V0[:9], omega0[:9], T, method="flow", rtol=1e-12)
+    assert not SCENE.ensemble(V0[1:], omega0[1:], 1e-3).flow.any()
+    assert SCENE.ensemble(V0, omega0, 1e-3).flow.mean() > 0.99
+    tight = SCENE.ensemble(V0[:9], omega0[:9], T, method="flow", rtol=1e-12)
     assert not tight.flow.any()
     assert tight.flow_error > 1e-12
     own = SCENE.replace(mu=np.linspace(0.2, 0.3, V0.size))
-    assert not vr.ensemble(own, V0, omega0, 1e-3, rtol=1e-3).flow.any()
+    assert not own.ensemble(V0, omega0, 1e-3, rtol=1e-3).flow.any()
 
 
 def test_kept_on_disk_and_built_once(monkeypatch):
@@ -218,9 +218,9 @@ def test_hardly_any_speed_left_at_onset():
     t = [12.0]
     # about the spin with which nothing is left
     spins = -V0 * np.linspace(0.55, 0.65, 4000)
-    found = vr.ensemble(scene, V0, spins, t, method="flow", fields="V")
-    few = np.argsort(np.abs(found.V[:, 0]) / V0)[:100]
-    best = vr.ensemble(scene, V0[few], spins[few], t, method="integrate", rtol=1e-12, fields="V")
+    found = scene.ensemble(V0, spins, t, method="flow", fields="V")
+    few = np.argsort(abs(found.V[:, 0]) / V0)[:100]
+    best = scene.ensemble(V0[few], spins[few], t, method="integrate", rtol=1e-12, fields="V")
     by = found.flow[few]
     assert found.flow.mean() > 0.99
     assert not by.all()

@@ -46,7 +46,7 @@ def nasty(scene):
     numbers.
     """
     speeds = 1.0, 1e-3, 1e-200
-    star = vr.contact(scene, speeds, delta=0.0).delta_star
+    star = scene.contact(speeds, delta=0.0).delta_star
     opposite = -0.5 / scene.j
     return np.array(
         [
@@ -78,7 +78,7 @@ def test_finite_in_bounded_steps(name, method):
     start = nasty(scene)
     t = decay_time(scene) * np.array([1e-12, 1e-6, 1e-2, 1.0, 10.0, 100.0, 1e3, 1e6, 1e12])
     options = {"method": method, "fields": FIELDS, "rtol": 1e-6, "max_steps": STEPS}
-    here, there = (vr.ensemble(scene, *(sign * start).T, t, **options) for sign in (1.0, -1.0))
+    here, there = (scene.ensemble(*(sign * start).T, t, **options) for sign in (1.0, -1.0))
     assert here.success.all(), start[~here.success]
     assert not np.isnan(here.delta).any()
     for field in ("V", "omega", "x", "angle"):
@@ -92,7 +92,7 @@ def test_finite_in_bounded_steps(name, method):
     first = start**2 @ [[1.0], [scene.j]]
     assert (energy <= (1.0 + tol.MOTION_DEFAULT) * first)[rolling].all()
     if scene.alpha > 1.5:
-        assert (np.abs(here.V[:, -1]) < tol.PROVEN_SUBNORMAL).all()
+        assert (abs(here.V[:, -1]) < tol.PROVEN_SUBNORMAL).all()
         np.testing.assert_array_equal(here.x[:, -1], here.x[:, -2])
 
 
@@ -102,6 +102,6 @@ def test_speeds_that_vanish_together(rtol):
     1e-16: what relaxes there takes no time that the clock could tell.  Found where matrices of
     other digits moved the onset."""
     omega = 1.4692137743888392 * (1.0 + np.arange(-80, 81) * np.finfo(float).eps)
-    ended = vr.ensemble(SCENE, -1.0, omega, [1e-3, 3e-3], rtol=rtol, method="integrate")
+    ended = SCENE.ensemble(-1.0, omega, [1e-3, 3e-3], rtol=rtol, method="integrate")
     assert ended.success.all()
-    assert (np.abs(ended.V) <= tol.VANISHED * rtol).all()
+    assert (abs(ended.V) <= tol.VANISHED * rtol).all()

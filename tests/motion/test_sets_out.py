@@ -19,7 +19,7 @@ T = np.linspace(0.0, 2.0, 9)
 
 
 def fastest(m):
-    return float(max(np.abs(m.V).max(), np.abs(m.omega).max()))
+    return float(max(abs(m.V).max(), abs(m.omega).max()))
 
 
 @pytest.mark.parametrize("faint", [1e-12, 1e-18, 1e-70])
@@ -29,7 +29,7 @@ def test_a_faint_drive_moves_as_much_less(faint):
     """
     for times, values in (([0.0], [1.0]), ([0.0, 2.0], [0.0, 1.0]), ([0.7, 2.0], [0.0, 1.0])):
         drives = (vr.Schedule(times, np.multiply(values, size)) for size in (faint, 1e-9))
-        m, plain = (vr.roll(ROLLER, 0.0, 0.0, T, torque=torque) for torque in drives)
+        m, plain = (ROLLER.roll(0.0, 0.0, T, torque=torque) for torque in drives)
         assert m.success
         assert close(m.V / faint, plain.V / 1e-9, tol.FAINT)
 
@@ -50,9 +50,9 @@ def test_a_start_of_next_to_nothing(drive, creep):
     too small.
     """
     t = np.array([1e-3, 2e-3, 1e-2])
-    plain = vr.roll(PAPER, 0.0, 0.0, t, **drive)
+    plain = PAPER.roll(0.0, 0.0, t, **drive)
     for V0 in (1e-80, 1e-95, 1e-300):
-        m = vr.roll(PAPER, V0, creep * V0, t, **drive)
+        m = PAPER.roll(V0, creep * V0, t, **drive)
         assert m.success
         assert close(m.V, plain.V, 30e-8, scale=max(fastest(plain), V0))
 
@@ -68,13 +68,12 @@ def test_to_and_fro_where_friction_is_strong():
     sizes = scene.mu * draw.uniform(0.1, 1.3, (2, 60, 20)) * (-1.0) ** np.arange(20)
     force, torque = (vr.Schedule(times, each) for each in np.repeat(sizes, 2, axis=2))
     found, best = (
-        vr.ensemble(scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque)
-        for rtol in (1e-6, 1e-10)
+        scene.ensemble(0.0, 0.0, t, rtol=rtol, force=force, torque=torque) for rtol in (1e-6, 1e-10)
     )
     assert found.success.all()
     assert best.success.all()
     speeds, exact = (np.stack([e.V, e.omega]) for e in (found, best))
-    so_far = np.maximum.accumulate(np.abs(exact).max(axis=0), axis=1)
+    so_far = np.maximum.accumulate(abs(exact).max(axis=0), axis=1)
     assert close(speeds, exact, 30e-6, scale=so_far)
 
 
@@ -92,9 +91,9 @@ def test_two_ways_on_are_none(name):
     ratio, force, slope = TWO_WAYS[name]
     drive = {"force": force, "omega": vr.Schedule([0.0, 1.0], [0.0, slope])}
     with pytest.warns(RuntimeWarning, match="two directions"):
-        m = vr.roll(vr.Scene(11.0, 0.5 / ratio, 1.0, 1.0, 0.5), 0.0, None, [0.0, 1.0], **drive)
+        m = vr.Scene(11.0, 0.5 / ratio, 1.0, 1.0, 0.5).roll(0.0, None, [0.0, 1.0], **drive)
     assert m.status == vr.MotionStatus.UNDECIDED
     assert m.V[0] == 0.0
     assert np.isnan(m.V[1])
-    weaker = vr.roll(vr.Scene(11.0, 0.5, 1.0, 1.0, 0.5), 0.0, None, [0.0, 1.0], **drive)
+    weaker = vr.Scene(11.0, 0.5, 1.0, 1.0, 0.5).roll(0.0, None, [0.0, 1.0], **drive)
     assert weaker.success

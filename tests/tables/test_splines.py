@@ -12,6 +12,7 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
+from viscoroll import tables
 from viscoroll.tables import table_files
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
@@ -23,8 +24,8 @@ ALPHA = np.array([5.0, 7.0, 11.0, 16.0])
 @pytest.fixture(scope="module")
 def grid():
     speeds = V[::2]
-    nodes = vr.tables.creep_nodes(SCENE, speeds, 41, alpha=ALPHA)
-    return vr.tables.build(SCENE, speeds, delta=nodes, alpha=ALPHA)
+    nodes = tables.creep_nodes(SCENE, speeds, 41, alpha=ALPHA)
+    return tables.build(SCENE, speeds, delta=nodes, alpha=ALPHA)
 
 
 def inside(table, count):
@@ -42,14 +43,14 @@ def inside(table, count):
 @pytest.mark.parametrize("nodes", [{}, {"alpha": 0}, {"V": [0, 9], "delta": [3, 9, 20]}])
 def test_compiled_values_are_those_of_the_interpolant(grid, nodes, linear):
     table = grid.isel(nodes, drop=True)
-    look_up = vr.tables.Interpolant(table, linear)
+    look_up = tables.Interpolant(table, linear)
     points = inside(table, 200)
     places = np.transpose([points.get(axis, np.ones(200)) for axis in ("V", "delta", "alpha")])
     for field in table_files.fields_of(table):
         own = {str(dim): points[str(dim)] for dim in table[field].dims}
         at, spline = look_up.jitted(field)
         out = np.array([at(spline, *place) for place in places])
-        size = np.abs(table[field].values).max()
+        size = abs(table[field].values).max()
         assert close(out[:, 0], look_up(field, **own)[field], tol.COMPILED_SPLINE, scale=size)
         others = [n for n, axis in enumerate(("V", "delta", "alpha"), 1) if axis not in own]
         assert not out[:, others].any()
@@ -62,10 +63,10 @@ def test_compiled_slopes_are_those_of_the_values(grid):
         for name, each in inside(grid, 100).items()
     ]
     for field in ("Q", "lam"):
-        at, spline = vr.tables.Interpolant(grid).jitted(field)
+        at, spline = tables.Interpolant(grid).jitted(field)
         for place in np.transpose(middle):
             value, *slopes = at(spline, *place)
-            for slope, move in zip(slopes, np.diag(step * place), strict=True):
+            for slope, move in zip(slopes, np.diag(step * place)):
                 low, high = (at(spline, *place + each).value for each in (-move, move))
                 if SCENE.mu not in np.abs([value, low, high]):
                     found = (high - low) / (2.0 * move.sum())
@@ -74,7 +75,7 @@ def test_compiled_slopes_are_those_of_the_values(grid):
 
 
 def test_compiled_values_are_clipped_and_nothing_is_extrapolated(grid):
-    at, Q = vr.tables.Interpolant(grid.sel(alpha=[11.0])).jitted("Q")
+    at, Q = tables.Interpolant(grid.sel(alpha=[11.0])).jitted("Q")
     slips = np.array([at(Q, 0.02, creep, 0.0) for creep in np.linspace(0.02, 0.05, 1001)])
     slips = slips[slips[:, 0] == SCENE.mu]
     assert slips.size
@@ -92,27 +93,26 @@ def called(law, V, omega):
 
 
 def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, tmp_path):
-    vr.tables.save(grid, tmp_path / "grid.nc")
+    tables.save(grid, tmp_path / "grid.nc")
     law = vr.law(vr.load_law(tmp_path / "grid.nc", alpha=11.0))
     points = inside(grid, 2000)
     speeds = points["V"] * np.random.default_rng(1).choice([-1.0, 1.0], 2000)
     omega = speeds * (1.0 + points["delta"])
     found = law(speeds, omega, slopes=True)
-    truth = vr.law(SCENE)(speeds, omega)
+    truth = SCENE.law()(speeds, omega)
     for field in ("Q", "M"):
-        error = np.abs(getattr(found, field) - getattr(truth, field)).max()
+        error = abs(getattr(found, field) - getattr(truth, field)).max()
         assert error <= grid[field].attrs["spline_error"]
     assert (found.M_half_space == found.M_cylinder).all()
     (function, data) = law.ctypes
     out = (ctypes.c_double * 10)()
-    for n, at in enumerate(zip(speeds[:50], omega[:50], strict=True)):
+    for n, at in enumerate(zip(speeds[:50], omega[:50])):
         assert function(*at, out, data) == 0
         state = tuple(float(each[n]) for each in found)
         assert tuple(out) == state == called(law.jitted, *at) == law.jitted(*at)
         assert law(*at) == state[:4]
     again = pickle.loads(pickle.dumps(law))
     assert again(0.3, 0.301) == law(0.3, 0.301)
-    assert "for vr.law alone" in repr(law)
 
 
 def test_a_grid_of_another_program(tmp_path):
@@ -120,7 +120,7 @@ def test_a_grid_of_another_program(tmp_path):
     package.
     """
     nodes = 1e-3 * V
-    own = vr.tables.build(ROLLER, nodes, delta=vr.tables.creep_nodes(ROLLER, nodes, 81))
+    own = tables.build(ROLLER, nodes, delta=tables.creep_nodes(ROLLER, nodes, 81))
     other = own[["Q", "M"]].transpose().drop_attrs()
     other.attrs = {"R": ROLLER.R, "mu": ROLLER.mu, "load": ROLLER.load}
     other["delta"].attrs["units"] = "1"
@@ -136,5 +136,5 @@ def test_a_grid_of_another_program(tmp_path):
     moment = ROLLER.load * ROLLER.R
     assert close(found.Q, truth.Q, tol.COARSE_GRID, scale=ROLLER.load)
     assert close(found.M, truth.M, tol.COARSE_GRID, scale=moment)
-    size = moment / np.abs(speeds)
+    size = moment / abs(speeds)
     assert close(found.dQ_domega, truth.dQ_domega, tol.COARSE_GRID_SLOPE, scale=size)

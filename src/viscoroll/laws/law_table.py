@@ -435,7 +435,7 @@ _made = lru_cache(maxsize=_KEPT_TABLES)(make_table)
 # --- The law of one relaxation time for all alpha ---
 
 #: Chebyshev terms of an octave of alpha; 16 leave an error of rounding
-#: (tests/tables/test_law_axis.py)
+#: (tests/tables/test_law.py)
 TERMS_OF_ALPHA = 16
 #: octaves of alpha from 1 to the highest alpha
 OCTAVES: int = math.frexp(HIGHEST_ALPHA)[1]

@@ -144,6 +144,12 @@ def fresh():
     return sum(function.stats.cache_hits.values())
 
 
+def assert_compiled(words):
+    """A use that warns in these words, and takes nothing from the cache."""
+    with pytest.warns(RuntimeWarning, match=words):
+        assert fresh() == 0
+
+
 #: without a figure: the first kernel does not know how many follow it
 NOTICE = (
     r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
@@ -191,8 +197,7 @@ def test_a_damaged_file_is_replaced(cache, damage):
     """The value is right, and the time after that it comes from the cache again."""
     (path,) = cache.iterdir()
     path.write_bytes(damage(path.read_bytes()))
-    with pytest.warns(RuntimeWarning, match="cache of compiled kernels is damaged"):
-        assert fresh() == 0
+    assert_compiled("cache of compiled kernels is damaged")
     assert fresh() == 1
 
 
@@ -228,8 +233,7 @@ def test_what_others_may_have_written_is_not_run(cache, place):
     before = shared.stat().st_mode
     trace = plant(path)
     shared.chmod(0o777)
-    with pytest.warns(RuntimeWarning, match=SHARED):
-        assert fresh() == 0
+    assert_compiled(SHARED)
     assert not trace.exists()
     # sticky as /tmp: nobody there replaces what is another's
     shared.chmod(before if place != "above" else 0o1777)
@@ -242,9 +246,7 @@ def test_what_belongs_to_another_is_not_run(cache):
     (path,) = cache.iterdir()
     trace = plant(path)
     os.chown(cache, NOBODY, -1)
-    words = r"compiled kernels are not cached \(.*: it belongs to another user; name"
-    with pytest.warns(RuntimeWarning, match=words):
-        assert fresh() == 0
+    assert_compiled(r"compiled kernels are not cached \(.*: it belongs to another user; name")
     assert not trace.exists()
 
 
@@ -295,8 +297,7 @@ def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):
     obstacle = tmp_path / "file"
     obstacle.write_text("in the way")
     monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(obstacle))
-    with pytest.warns(RuntimeWarning, match="compiled kernels are not cached"):
-        assert fresh() == 0
+    assert_compiled("compiled kernels are not cached")
     assert fresh() == 0  # once is enough
 
 
@@ -333,10 +334,7 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
     monkeypatch.setattr(Path, "home", nowhere)
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     cache_folder._without_home.cache_clear()
-    with pytest.warns(
-        RuntimeWarning, match=f"there is no home directory: caches are in {tmp_path}"
-    ):
-        assert fresh() == 0
+    assert_compiled(f"there is no home directory: caches are in {tmp_path}")
     assert fresh() == 1
     assert [path.name for path in tmp_path.iterdir()] == [f"viscoroll-{os.geteuid()}"]
     cache_folder._without_home.cache_clear()

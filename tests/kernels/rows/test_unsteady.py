@@ -41,7 +41,7 @@ def exact(known, z):
         )
         found = zone_of(moved, z)
         compliance = flint.arb(1)  # of long times
-        for own_a, own_b in zip(known.a, known.b, strict=True):
+        for own_a, own_b in zip(known.a, known.b):
             compliance *= (1 - shift / own_a) / (1 - shift / own_b)
         H = z * (z + 2 * found.h) / compliance
         return tuple(mp.mpf(value.mid()) for value in (H, H * found.m, found.g))
@@ -67,7 +67,7 @@ def test_rows_against_its_definition(material):
         z = (10.0 ** np.random.default_rng(4).uniform(low - 2.0, high + 3.0, 4)).tolist()
         h = [zone_of(known, flint.arb(each)).h for each in z]
         truth = [float(exact(known, mp.mpf(each))) for each in z]
-        S_J = float(sum(J / b**2 for J, b in zip(known.J, known.b, strict=True)))
+        S_J = float(sum(J / b**2 for J, b in zip(known.J, known.b)))
     u = [0.5 / math.sqrt(each * (each + 2.0 * float(own))) for each, own in zip(z, h)]
     kind = "alpha" if isinstance(material, float) else "material"
     scene = vr.Scene(kappa=1.0, mu=0.1, **{kind: material})
