@@ -276,7 +276,7 @@ def test_a_state_that_was_taken_is_gone_on_from_with_the_same_bits(built, name):
         assert np.array_equal(other.get(names), exact)
         for damaged in (kept[:-1], b"x" + kept[1:]):
             other.refuses(
-                "those that this FMU has serialized", other.fmu.deserializeFMUState, damaged
+                "a state which this FMU has serialized", other.fmu.deserializeFMUState, damaged
             )
         one.fmu.freeFMUState(state)
         other.fmu.freeFMUState(same)

@@ -144,8 +144,8 @@ def test_rest_while_sliding_and_from_the_start():
 def test_a_motion_that_is_given_up_says_where_it_stood():
     """In the units that it is asked in, with what to try."""
     words = re.compile(
-        r"max_steps steps did not suffice .*: raise max_steps, .* the last state was t = (\S+)( s)? "
-        r"in [a-z]+ slip, V = (\S+)( m s-1)?, omega = (\S+)( rad s-1)?(; |$)"
+        r"max_steps steps did not suffice .*: raise max_steps, .* the last state was t = (\S+)( s)?"
+        r" in [a-z]+ slip, V = (\S+)( m s-1)?, omega = (\S+)( rad s-1)?(; |$)"
     )
     with pytest.warns(RuntimeWarning, match="gives the last state"):
         cut = ROUNDED.roll(1.5, 0.5, [1e-6, 1.0], max_steps=10)
