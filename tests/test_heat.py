@@ -38,6 +38,11 @@ def with_shift(shift, **more):
     return ROLLER.replace(material=dataclasses.replace(RUBBER, shift=shift, **more))
 
 
+def beside(**more):
+    """The roller on its own rubber, with other data."""
+    return ROLLER.replace(base=dataclasses.replace(RUBBER, **more))
+
+
 # --- equilibria ---
 
 
@@ -270,6 +275,11 @@ def test_conductance_of_film_and_cover():
             ),
             "another one at each temperature",
         ),
+        (lambda: beside(temperature=60.0).temperature(1.0, **WARM), "relaxes too"),
+        (lambda: beside(thickness=0.01).temperature(1.0, **WARM), "relaxes too"),
+        (lambda: beside(shift=vr.WLF(T0=-60.0)).temperature(1.0, **WARM), "relaxes too"),
+        (lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0), "one a_T for each"),
+        (lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0), "a_T = "),
     ],
 )
 def test_refused(call, words):

@@ -446,12 +446,15 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
         raise described_error(
             "material", "does not relax, and rolls without loss", "one that relaxes"
         )
-    if pair.like:  # each has half of both losses, at one temperature
+    # each has half of both losses, at one temperature; a series alone does not make it so
+    same = "thickness", "temperature", "shift", "vertical_shift"
+    one, other = ([getattr(body, name) for name in same] for body, _ in bodies)
+    if pair.like and one == other:
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
         allowed = (
-            "elastic, rigid or of the same material; pair_temperatures has a temperature "
-            "for each body"
+            "elastic, rigid or of the same material, thickness, reference temperature and shift; "
+            "pair_temperatures has a temperature for each body"
         )
         raise described_error("base", "relaxes too", allowed)
     return found[0]
