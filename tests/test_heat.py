@@ -381,6 +381,13 @@ def test_fit_at_the_strain_of_the_contact():
     assert "between the sets at 0.001 and 0.1" in own.measured.source
     small = vr.fit_at_strain([record(1e-6, 0.0), record(1e-5, 0.0)], ROLLER, 3.0)
     assert small.source == "a test, the set at a strain of 1e-05"
+    for given, roller, words in (
+        ([], ROLLER, "at least one"),
+        ([record(0.01), record(0.01)], ROLLER, "each of another strain"),
+        (sets, vr.presets.RUBBER_ROLLER, "a Cylinder of a Material"),
+    ):
+        with pytest.raises(vr.ParameterError, match=words):
+            vr.fit_at_strain(given, roller, 3.0)
 
 
 @pytest.mark.usefixtures("two_speeds")
