@@ -520,10 +520,10 @@ def _sets_of(records: Sequence[DynamicModuli]) -> list[Any]:
         parts = np.split(order, np.flatnonzero(np.diff(np.log(strains[order])) > _GAP) + 1)
         # sorted indices: points stay in the order of the record
         found += [record] if len(parts) == 1 else [_points(record, np.sort(part)) for part in parts]
-    strains = [each.mean_strain for each in found]
-    if len({*strains}) < max(1, len(strains)):
+    means = [each.mean_strain for each in found]
+    if len({*means}) < max(1, len(means)):
         allowed = "at least one, each of another strain"
-        raise described_error("records", f"have the strains {strains}", allowed)
+        raise described_error("records", f"have the strains {means}", allowed)
     return sorted(found, key=lambda each: each.mean_strain)
 
 
