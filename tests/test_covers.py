@@ -287,7 +287,7 @@ def test_a_law_of_a_roller_on_disk(covered, tmp_path):
     """It keeps its bodies, and is refused where the load makes another thickness/l0."""
     roller, dataset = covered
     vr.tables.save(dataset, tmp_path / "law.nc")
-    assert all("speeds, against solves" in check.meaning for check in check_table(dataset, 3, 0))
+    assert all("compared with solutions" in check.meaning for check in check_table(dataset, 3, 0))
     law = vr.load_law(tmp_path / "law.nc")
     assert law.pair == roller.pair
     # delta_0 does not vary with mu: no grid holds every kappa and mu

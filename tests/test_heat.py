@@ -48,6 +48,11 @@ def balanced(found, ambient, conductance, share=1.0):
     return close(given_off, lost, tol.HEAT_BALANCE, scale=1e-3 * conductance)
 
 
+def beside(**more):
+    """The roller on its own rubber, with other data."""
+    return ROLLER.replace(base=dataclasses.replace(RUBBER, **more))
+
+
 # --- equilibria ---
 
 
@@ -275,6 +280,11 @@ def test_conductance_of_film_and_cover():
             ),
             "another one at each temperature",
         ),
+        (lambda: beside(temperature=60.0).temperature(1.0, **WARM), "relaxes too"),
+        (lambda: beside(thickness=0.01).temperature(1.0, **WARM), "relaxes too"),
+        (lambda: beside(shift=vr.WLF(T0=-60.0)).temperature(1.0, **WARM), "relaxes too"),
+        (lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0), "one a_T for each"),
+        (lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0), "a_T = "),
     ],
 )
 def test_refused(call, words):
@@ -373,6 +383,13 @@ def test_fit_at_the_strain_of_the_contact():
     assert "between the sets at 0.001 and 0.1" in own.measured.source
     small = vr.fit_at_strain([record(1e-6, 0.0), record(1e-5, 0.0)], ROLLER, 3.0)
     assert small.source == "a test, the set at a strain of 1e-05"
+    for given, roller, words in (
+        ([], ROLLER, "at least one"),
+        ([record(0.01), record(0.01)], ROLLER, "each of another strain"),
+        (sets, vr.presets.RUBBER_ROLLER, "a Cylinder of a Material"),
+    ):
+        with pytest.raises(vr.ParameterError, match=words):
+            vr.fit_at_strain(given, roller, 3.0)
 
 
 @pytest.mark.usefixtures("two_speeds")

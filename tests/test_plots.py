@@ -58,3 +58,14 @@ def test_the_histogram_of_close_values_has_many_bars():
     (stairs,) = right.patches
     assert (stairs.get_data().values > 0).sum() > 40
     assert not right.get_title()
+
+
+def test_equilibria_of_heat():
+    """Temperatures over the speed, the unstable ones open; a stress at no place has no figure."""
+    rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), shift=vr.WLF(T0=-50.0))
+    roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, mu=0.6, load=2e4)
+    found = roller.temperature([1.0, 2.0], ambient=20.0, conductance=6.0)
+    stable, _ = found.plot().axes[0].lines
+    assert np.array_equal(stable.get_ydata(), found.temperature[found.stable])
+    with pytest.raises(vr.ParameterError, match="a plot needs"):
+        roller.stress([], 1.0, delta=0.0).plot()

@@ -79,7 +79,7 @@ def test_what_was_measured_stays_with_the_material():
     assert fit.material(0.5).measured == vr.Measured(
         data[0].min(), data[0].max(), max(fit.misfit), "dma.csv", errors
     )
-    with pytest.warns(vr.ModelWarning, match="was not reached"):
+    with pytest.warns(vr.ModelWarning, match="is above the target"):
         rubber = vr.fit_prony(*data, 1).material(0.5)
     poor = vr.Cylinder(R=0.1, m=30.0, material=rubber, mu=0.5).validity(0.1).measured
     assert not poor.holds

@@ -170,7 +170,7 @@ def test_material_fit(run, here):
     assert report == f"{record}\n{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
     assert "Prony series of 4 modes" in run(f"material fit {DATA} --modes 4 --misfit 0.05")
-    assert f"measured          {fit.measured}" in run("material show a.toml")
+    assert f"measured from          {fit.measured}" in run("material show a.toml")
 
 
 @pytest.mark.parametrize(
@@ -298,7 +298,7 @@ REFUSED = {
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",
     "tables law rubber.toml --alpha 1:2 -o law.nc": "which has a material of its own",
     "tables law --alpha low:high -o law.nc": "'low:high' must be LOW:HIGH",
-    "tables validate file": "file: is damaged or is not a table",
+    "tables validate file": "file: is damaged or is not a law",
     "export folder.csv -o all.csv": "all.csv: must be a name that ends in .nc for the results "
     "of a run",
     "export rubber.nc -o rubber.csv": "a name that ends in .nc, .cdf, .h, .json for a law",

@@ -152,6 +152,16 @@ def test_a_material_stored_is_read_to_the_bit(material):
         assert found == {"material": material}
 
 
+def test_a_shift_is_not_stored_without_its_vertical_one(tmp_path):
+    """A file cannot hold a function; ``at`` of the shift alone would give other moduli."""
+    for vertical, shift in (("entropic", vr.WLF(T0=20.0)), (lambda T: 1.0 + 0.01 * T, None)):
+        material = dataclasses.replace(STORED[0], shift=vr.WLF(T0=20.0), vertical_shift=vertical)
+        material.to_netcdf(tmp_path / "m.nc")
+        (tmp_path / "m.toml").write_text(material_as_toml(material))
+        for name in ("m.nc", "m.toml"):
+            assert read_materials(tmp_path / name)["material"].shift == shift
+
+
 def test_a_material_of_another_toml_file():
     """As ``material fit -o dma.toml`` leaves it, for either body; the layer may be given beside
     it.

@@ -137,7 +137,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     refused(lambda: grid.ensemble([1.0, 9.0], 9.0, 5.0, torque=5.0), "within the table")
     refused(lambda: grid.contact(0.1, delta=0.0, fields="lam"), "lam")
     assert "beta" not in grid.contact(0.1, delta=0.0).as_dict()
-    refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, for which the grid")
+    refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")

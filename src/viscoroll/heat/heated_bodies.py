@@ -452,16 +452,17 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
         raise described_error(
             "material", "does not relax, and rolls without loss", "one with a Prony series"
         )
-    # each has half of both losses, at one temperature; bodies of two thicknesses have other parts
-    if pair.like and pair.cylinder.thickness == pair.half_space.thickness:
+    # each has half of both losses, at one temperature; a series alone does not make it so
+    same = "thickness", "temperature", "shift", "vertical_shift"
+    one, other = ([getattr(body, name) for name in same] for body, _ in bodies)
+    if pair.like and one == other:
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
-        raise described_error(
-            "base",
-            "relaxes too",
-            "elastic, rigid, or of the material and the thickness of the cylinder; for two "
-            "half-spaces that relax call vr.pair_temperatures",
+        allowed = (
+            "elastic, rigid, or of the same material, thickness, reference temperature and shift; "
+            "for two half-spaces that relax call vr.pair_temperatures"
         )
+        raise described_error("base", "relaxes too", allowed)
     return found[0]
 
 

@@ -363,10 +363,11 @@ def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
     """Return the shifts of a material that files hold as key -> value in TOML: wlf or arrhenius,
     vertical_shift.
 
-    shift, vertical_shift: as in :class:`.material.Material`; a function is left out.
+    shift, vertical_shift: as in :class:`.material.Material`; a function is left out, and a shift
+        beside a vertical one that is left out, without which it would give wrong moduli.
     """
     found = {} if vertical_shift != "entropic" else {"vertical_shift": '"entropic"'}
-    if isinstance(shift, WLF | Arrhenius):
+    if isinstance(shift, WLF | Arrhenius) and not callable(vertical_shift):
         numbers = ", ".join(f"{name} = {value!r}" for name, value in vars(shift).items())
         found[type(shift).__name__.lower()] = f"{{ {numbers} }}"
     return found

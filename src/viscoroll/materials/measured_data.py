@@ -33,16 +33,14 @@ from ..core import (
 GAS_CONSTANT = 8.31446261815324
 #: absolute zero, degrees Celsius; exact
 ABSOLUTE_ZERO = -273.15
-#: temperatures between which rubbers and polymers are measured and used, degrees Celsius.  300 K,
-#: room temperature in kelvin, lies above; room temperature converted twice, 27 - 273 = -246, lies
-#: below; 200 K is below the glass transition of nearly every rubber, so that a number above 200 is
-#: more likely in kelvin than in degrees Celsius
+#: temperatures between which rubbers and polymers are measured and used, degrees Celsius.  300 K
+#: lies above; room temperature converted twice, 27 - 273 = -246, lies below; 200 K is below nearly
+#: every glass transition, so that a number above 200 is more likely in kelvin
 USUAL_RANGE = -150.0, 200.0
 #: K; distance from the temperatures of found factors up to which they are used: that within which
 #: sweeps are one
 NEAR = 0.5
-#: decades by which a fitted law may miss a found factor before it warns: a speed is then off by a
-#: quarter
+#: decades by which a fitted law may miss a found factor before it warns: a quarter of the speed
 _FAR_OFF = 0.1
 #: K; bounds of C2 - (T0 - lowest temperature) of a fitted WLF: at the lower one the pole is beside
 #: the data, at the upper one log a_T is a straight line
@@ -189,7 +187,8 @@ class ShiftFactors:
     Raises
     ------
     ParameterError
-        When called, a temperature that is more than 0.5 K outside of the found ones.
+        Values out of range, temperatures that do not ascend or lack a factor; when called, one
+        that is more than 0.5 K outside of the found ones.
 
     Warns
     -----
@@ -210,6 +209,15 @@ class ShiftFactors:
     temperature: tuple[float, ...]
     a_T: tuple[float, ...]
     T0: float
+
+    def __post_init__(self) -> None:
+        """Check the fields, and replace them by floats and tuples of floats."""
+        T = check_array("temperature", self.temperature, unit="degC", above=ABSOLUTE_ZERO)
+        a_T = check_array("a_T", self.a_T, above=0.0)
+        if T.ndim != 1 or not T.size or T.shape != a_T.shape or (np.diff(T) <= 0.0).any():
+            raise described_error("temperature", f"= {T}", "ascending, with one a_T for each")
+        T0 = check_number("T0", self.T0, unit="degC", above=ABSOLUTE_ZERO)
+        vars(self).update(temperature=tuple(T.tolist()), a_T=tuple(a_T.tolist()), T0=T0)
 
     def __call__(self, temperature: float) -> float:
         """Return a_T as :meth:`_ShiftLaw.__call__` does, with the errors that the class states."""
@@ -326,11 +334,9 @@ class ShiftFactors:
         first to the last.
         """
         if len(self.a_T) < fewest:
-            raise described_error(
-                "temperature",
-                f"has {len(self.a_T)} values",
-                f"a list of at least {fewest}, to fit this law",
-            )
+            found = f"has {len(self.a_T)} values"
+            allowed = f"a list of at least {fewest}, to fit this law"
+            raise described_error("temperature", found, allowed)
         if not self.a_T[-1] < self.a_T[0]:
             found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
             raise ParameterError("a_T", found, "shift factors that fall with temperature")
@@ -359,10 +365,8 @@ def check_celsius(name: str, temperature: Any) -> float:
     name: name of the parameter, for the error and the warning.
     temperature: number of degrees Celsius, or a value with a unit of temperature, which is
         converted; above absolute zero.
-    Returns a float, degrees Celsius; also where it warns.
-    Raises ParameterError for a value that is no single finite number above -273.15.
-    Warns with ModelWarning outside :data:`USUAL_RANGE`, -150 to 200.  The text contains no value,
-    so that Python shows it once for each line of a program.
+    Returns a float, degrees Celsius.  Raises ParameterError for what is no number above -273.15.
+    Warns with ModelWarning outside :data:`USUAL_RANGE`, by a text without the value.
     """
     found = check_number(name, temperature, unit="degC", above=ABSOLUTE_ZERO)
     if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
@@ -488,11 +492,8 @@ class Measured:
     strain: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the fields, and replace the numbers by floats in rad/s; a value with a unit is
-        converted.
-
-        Raises ParameterError as the class states, and for a source that is no text, or has NUL or
-        surrogates.
+        """Check the fields, and replace the numbers by floats, converted to rad/s; a source that is
+        no text, or has NUL or surrogates, is refused too.
         """
         check_fields(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))

@@ -24,7 +24,14 @@ from ..core import (
     describe_value,
     described_error,
 )
-from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Prony, VerticalShift, check_celsius
+from ..materials import (
+    LARGEST_TIME_RATIO,
+    MOST_MODES,
+    Material,
+    Prony,
+    VerticalShift,
+    check_celsius,
+)
 from .dma_reader import RelaxationModulus
 from .dynamic_moduli import (
     Curve,
@@ -446,7 +453,8 @@ def fit_at_strain(
     Raises
     ------
     ParameterError
-        A record without strain, and as :func:`viscoroll.fit_prony` and :func:`viscoroll.validity`.
+        A record without strain, no record, two records of one strain, a cylinder without a
+        Material, and as :func:`viscoroll.fit_prony` and :func:`viscoroll.validity`.
     ConvergenceError
         A strain that does not settle, as where the nearest of two sets depends on the moduli of
         each.
@@ -476,6 +484,8 @@ def fit_at_strain(
     sets = _sets_of(records if isinstance(records, (list, tuple)) else [records])
     if len(sets) == 1:
         return fit_prony(sets[0], **options)
+    if not isinstance(getattr(cylinder, "material", None), Material):
+        raise described_error("cylinder", "has no Material", "a Cylinder of a Material")
     strain = math.exp(np.mean([math.log(each.mean_strain) for each in sets]))
     for _ in range(_FITS):
         # moduli at the strain, the material of them, and the strain of its contact at that speed
@@ -502,7 +512,8 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
 
     records : as in :func:`fit_at_strain`.
     Returns a list of :class:`DynamicModuli`; a record of one strain is in it as it is.
-    Raises ParameterError for what is no record, and for a record without strain.
+    Raises ParameterError for what is no record, no record, a record without strain, and two of one
+    strain.
     """
     found: list[Any] = []
     for record in records or [None]:
@@ -519,6 +530,10 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
         parts = np.split(order, np.flatnonzero(np.diff(np.log(strains[order])) > _GAP) + 1)
         # sorted indices: points stay in the order of the record
         found += [record] if len(parts) == 1 else [_points(record, np.sort(part)) for part in parts]
+    means = [each.mean_strain for each in found]
+    if len({*means}) < max(1, len(means)):
+        allowed = "at least one, each of another strain"
+        raise described_error("records", f"have the strains {means}", allowed)
     return sorted(found, key=lambda each: each.mean_strain)
 
 

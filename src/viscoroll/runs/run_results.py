@@ -227,7 +227,7 @@ class RunResults(Result):
         ...     vr.runs.open_run("results.zarr").motions()
         ... except vr.FileError as error:
         ...     print(error.problem)
-        contains summaries but no motions: run it again with keep = "all" in [run]
+        contains summaries but no motions: repeat the run with keep = "all" in [run]
         """
         import xarray as xr
 

@@ -368,9 +368,11 @@ def stresses(data: Dataset) -> Figure:
 
 
 def equilibria(data: Dataset) -> Figure:
-    """Draw the speeds of all equilibria over the load, stable (filled) or not (open).
+    """Draw the speeds of all equilibria over the load, stable (filled) or not (open); of equilibria
+    of heat the temperatures over the speed.
 
-    data: dataset of steady rolling, as in ``Steady.to_xarray``: V, stable (1 or 0) and the loads.
+    data: dataset of steady rolling, as in ``Steady.to_xarray``: V, stable (1 or 0) and the loads;
+        or of heat, as in ``Temperatures.to_xarray``: temperature, V and stable.
         The load on the axis is the first of slope, force and torque that varies, else the force,
         which must be there then (KeyError).  Entries whose V is NaN, where there are fewer
         equilibria, are left out.
@@ -383,20 +385,20 @@ def equilibria(data: Dataset) -> Figure:
         for name in ("slope", "force", "torque")
         if name in data and np.ptp(_finite(data[name])) > 0.0
     )
-    load = next(loads, "force")
+    load, shown = ("V", "temperature") if "temperature" in data else (next(loads, "force"), "V")
     figure, axes = new_figure("Steady rolling: stable (filled) and unstable (open)")
-    x, V, stable = (
-        data[name].broadcast_like(data["V"]).values.ravel() for name in (load, "V", "stable")
+    x, y, stable = (
+        data[name].broadcast_like(data["V"]).values.ravel() for name in (load, shown, "stable")
     )
     style = {"color": LINES[1]["color"], "markersize": 4}
     for chosen, face, text in (
         (stable != 0, style["color"], "stable"),
         (stable == 0, "white", "unstable"),
     ):
-        drawn = chosen & np.isfinite(V)
-        axes.plot(x[drawn], V[drawn], "o", markerfacecolor=face, label=text, **style)
-    axes.set(xlabel=variable_label(data[load]), ylabel=variable_label(data["V"]))
-    speeds = np.abs(_finite(data["V"]))
+        drawn = chosen & np.isfinite(y)
+        axes.plot(x[drawn], y[drawn], "o", markerfacecolor=face, label=text, **style)
+    axes.set(xlabel=variable_label(data[load]), ylabel=variable_label(data[shown]))
+    speeds = np.abs(_finite(data["V"])) * (shown == "V")
     speeds = speeds[speeds > 0.0]
     # the initial values make it false where all speeds are 0
     if speeds.max(initial=0.0) > 100.0 * speeds.min(initial=np.inf):
@@ -552,7 +554,7 @@ def draw(data: Dataset) -> Figure:
         ("input" in data.dims, result_figures.sobol_bars),
         ({"t", "regime"} <= names, motion),
         ("equilibrium" in data.dims, equilibria),
-        ({"p", "x"} <= names, stresses),
+        ({"p", "x"} <= names and data["x"].size, stresses),
         (bool(varied_axes(data)), field_curves),
     )
     for applies, figure in kinds:
