@@ -292,7 +292,7 @@ def test_a_law_of_a_roller_on_disk(covered, tmp_path):
     assert law.pair == roller.pair
     # delta_0 does not vary with mu: no grid holds every kappa and mu
     grid = partial(vr.tables.build, law, [0.1], delta=[0.0])
-    refused(grid, "what = ", "a law of half-spaces")
+    refused(grid, "what = ", "the law of half-spaces")
     loaded = roller.replace(material=law, base=None)
     assert loaded.contact(1.0, delta=1e-3).as_dict() == roller.contact(1.0, delta=1e-3).as_dict()
     pressed = partial(loaded.replace(load=2.1e3).contact, 1.0, delta=0.0)

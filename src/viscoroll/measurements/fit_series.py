@@ -516,7 +516,7 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
     strain.
     """
     found: list[Any] = []
-    for record in records or [None]:
+    for record in records:
         if not isinstance(record, DynamicModuli):
             raise ParameterError("records", describe_value(record), "what vr.read_dma returns")
         if record.mean_strain is None:
