@@ -328,7 +328,7 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
     return Assumption(
         ~full_slip | (size <= CREEP_LIMIT),
         size,
-        f"in full slip the surface speeds of the two bodies differ by {100.0 * most:.2g} % of V; "
+        f"in full slip the surface speeds of the two bodies differ by {100.0 * most:.4g} % of V; "
         f"up to {100.0 * CREEP_LIMIT:g} % is allowed, since the rolling moment is computed with "
         "the speed of the axis"
         if most > 0.0
@@ -360,7 +360,7 @@ def assess_inertia(
         wave_ratio <= WAVE_LIMIT,
         wave_ratio,
         f"the speed is {100.0 * largest(wave_ratio):.3g} % of the shear wave speed; up to "
-        f"{100.0 * WAVE_LIMIT:g} % is allowed, where the load is within 10 % of the static one"
+        f"{100.0 * WAVE_LIMIT:g} % is allowed, where inertia changes the load by at most 10 %"
         + missing,
     )
 

@@ -252,8 +252,8 @@ def columns_of(
         elif index in owners:
             raise FileError(
                 table.path,
-                f"column {heading!r} is named for {owners[index]}, but {faults[0]}; or name "
-                "another column",
+                f"column {heading!r} was given for {owners[index]}, but {faults[0]}; or is another "
+                "column meant?",
             )
         else:
             others[heading or f"column {index}"] = faults[0] if faults else ""

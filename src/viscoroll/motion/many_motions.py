@@ -104,7 +104,8 @@ def solve_batch(
         which = (
             "motions differ in more than V0 and omega0"
             if free
-            else "motions have a drive or unsteady=True, or the base is of another material"
+            else "motions have a load, a brake, a drag, a prescribed speed or unsteady=True, or "
+            "the base is of another material"
         )
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None

@@ -289,17 +289,16 @@ def describe_load(given: Any, unit: str) -> str:
     given: a number, a :class:`Schedule`, a function of t, or a :class:`Feedback` of one of these,
     in the unit.
     unit: its unit, "" of a dimensionless one.
-    Returns for example "0.5 N m m-1"; "4 corners, 0 to 1 N m m-1" of a schedule, with its smallest
-    and largest value; "a function of t"; and "0.5 N m m-1 - 0.1 omega" of a feedback, without gains
-    that are 0.
+    Returns for example "0.5 N m m-1"; "schedule of 4 corners, smallest 0, largest 1 N m m-1"; "a
+    function of t"; and "0.5 N m m-1 - 0.1 omega" of a feedback, without gains that are 0.
     """
     value, gains = _value_and_gains(given)
     if callable(value):
         text = "a function of t"
     elif isinstance(value, Schedule):
         text = (
-            f"{value.times.size} corners, {value.values.min():.6g} to {value.values.max():.6g} "
-            f"{unit}"
+            f"schedule of {value.times.size} corners, smallest {value.values.min():.6g}, "
+            f"largest {value.values.max():.6g} {unit}"
         ).rstrip()
     else:
         text = f"{value!s:.60} {unit}".rstrip()
