@@ -15,8 +15,3 @@ def run_page(name):
     for n, code in enumerate(blocks(ROOT / f"docs/{name}.md", "python")):
         exec(compile(code, f"{name}.md, block {n + 1}", "exec"), session)
     return session
-
-
-#: pages of the how-to that take longer than a test may; tests/evidence runs them
-LONG = {"covers", "heat", "law", "nips", "wheels"}
-HOWTO = {path.stem for path in (ROOT / "docs/howto").glob("*.md")}

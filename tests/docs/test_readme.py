@@ -5,7 +5,7 @@ import re
 import pytest
 import tolerances as tol
 from calls import of_roller
-from pages import HOWTO, LONG, blocks, run_page
+from pages import blocks, run_page
 from places import ROOT
 from run_files import run_of
 
@@ -62,13 +62,6 @@ def test_offline_and_runtime(capsys):
     worst, way = map(float, capsys.readouterr().out.split())
     assert worst < tol.LAW_STATED
     assert way == vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0).x[-1]
-
-
-@pytest.mark.usefixtures("two_speeds")
-@pytest.mark.parametrize("page", sorted(HOWTO - LONG))
-def test_howto_runs(page, here):
-    run_page(f"howto/{page}")
-    assert page != "files" or (here / "motion.nc").exists()
 
 
 def test_relative_links_exist():
