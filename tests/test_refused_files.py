@@ -230,7 +230,7 @@ REFUSED = [
             "alpha and creep are both given": SCENE_FILE + "creep = { J = [0.5], T = [1.0] }",
             "line 4: [cylinder] | unknown key 'Mu' | did you mean 'mu'?": "[cylinder]\nR = "
             "0.1\nm = 35.5\nMu = 0.2\n[material]\nE = 1e6\nnu = 0.5",
-            "file.toml: line 5: [material] is given without [cylinder]": SCENE_FILE + RUBBER_FILE,
+            "file.toml: line 5: [material] is given beside [scene]": SCENE_FILE + RUBBER_FILE,
             "file.toml | [cylinder] | 'sideways' | plane": CYLINDER_FILE + 'plane = "sideways"',
             "file.toml | preset: 'paper' is not | paper-section-5": 'preset = "paper"',
             "file.toml | not TOML | line 1": "[scene\nalpha = 1",
@@ -251,7 +251,7 @@ REFUSED = [
                 '"lognrom"',
             ),
             "line 4 | lognorm also needs s": ("a preset", "s = 0.3, ", ""),
-            "an integer of more than 64 bits: write it with a decimal point": (
+            "an integer of more than 64 bits: write a shorter or a decimal": (
                 "a preset",
                 "j = 0.4",
                 f"j = {-(2**63) - 1}",
@@ -269,7 +269,7 @@ REFUSED = [
                 "low = 0.0, high = 3e-3",
                 "low = -1e308, high = 1e308",
             ),
-            "[heat] is given without [cylinder]": (
+            "[heat] is given beside": (
                 "a preset",
                 "[run]",
                 "[heat]\nambient = 20.0\nconductance = 1.0\n[run]",

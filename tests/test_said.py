@@ -80,7 +80,7 @@ SAID = [
     ),
     (
         lambda: vr.steady(PAPER, force=-0.175, torque=0.225).reason,
-        "no isolated steady speed: Q/load = 0.2 equals mu",
+        "no single steady state: |Q|/load = 0.2 equals mu",
     ),
     (
         lambda: vr.steady(PAPER.replace(alpha=1.0)).reason,

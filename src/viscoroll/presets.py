@@ -231,9 +231,8 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
         raise section_error(path, "", "cylinder", problem)
     for name in (*SECTIONS, "heat"):
         if name in content and "cylinder" not in content:
-            raise section_error(
-                path, "", name, f"[{name}] is given without [cylinder]: add a section [cylinder]"
-            )
+            problem = f"[{name}] is given beside {beside}: remove [{name}], or write [cylinder] "
+            raise section_error(path, "", name, f"{problem}in place of {beside}")
     for name, kind in {**SCHEMA, **more}.items():
         if name in content and kind is not None:
             as_struct(path, name, content[name], kind)

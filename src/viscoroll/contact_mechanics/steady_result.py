@@ -132,8 +132,10 @@ class Diagnosis(NamedTuple):
             V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
-                beyond = f"{at} any omega with full slip in this direction is steady"
-                return f"no isolated steady speed: Q/load = {Q:.6g} equals mu, and {beyond}"
+                return (
+                    f"no single steady state: |Q|/load = {mu:.6g} equals mu, and {at} every omega "
+                    "with slip in the direction of the loads is steady; change the loads or mu"
+                )
             return f"Q/load = {Q:.6g} is needed {at}, which exceeds the friction mu = {mu:.6g}"
         if self.elastic:
             if at_rest == 0.0:

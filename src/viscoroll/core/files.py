@@ -374,7 +374,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
             content = tomllib.loads(text, parse_float=partial(_finite, path))
         msgspec.msgpack.encode(content)  # tomllib reads longer integers
     except OverflowError as error:
-        problem = "has an integer of more than 64 bits: write it with a decimal point"
+        problem = "has an integer of more than 64 bits: write a shorter or a decimal number"
         raise FileError(path, problem) from error
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not in UTF-8 (byte {error.start}): save it in UTF-8") from error

@@ -300,8 +300,9 @@ class Pair:
         if type(law) is Bodies and law.poisson is None and self.most_coupled > limit:
             raise described_error(
                 "nu",
-                "is an array, and each value needs a table of pressure and shear solved together",
-                "one number; or give coupled=False, for the fast law without a table",
+                "has several values, of which each needs a table of pressure and shear together",
+                "one number; or neglect their interaction, by coupled=False of the Cylinder (in a "
+                "file coupled = false in [cylinder])",
             )
 
     @cached_property

@@ -201,7 +201,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
         )
     if factors.shape != sets.of_curve.shape:
         allowed = (
-            f"one factor for each of {sets.of_curve.size} temperatures, in the order of the curves"
+            f"one factor for each of {sets.of_curve.size} temperatures or curves, in their order"
         )
         raise shape_error("shift", factors.shape, allowed)
     found = np.empty(temperatures.size)

@@ -165,7 +165,8 @@ def _solve_by_flow_map(
     error = chosen.stated_error(
         path=not {"x", "angle"}.isdisjoint(rows), loss=not set(LOSSES).isdisjoint(rows)
     )
-    about |= {"flow_error": error, "flow_problem": chosen.problem}
+    problem = chosen.problem and f"no flow map, so motions are integrated: {chosen.problem}"
+    about |= {"flow_error": error, "flow_problem": problem}
     if not error <= rtol:  # true of NaN too
         return None
     wanted = tuple((STATES + LOSSES).index(name) for name in rows)
