@@ -486,13 +486,14 @@ def info(arguments: Namespace) -> None:
 @command(
     "tables validate",
     FILE,
-    option("-n", type=int, default=10_000, help="number of random speeds (default: 10000)"),
+    option("-n", type=int, default=10_000, help="number of random points (default: 10000)"),
 )
 def validate(arguments: Namespace) -> int:
     """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
-    The exit code is 1 if an error is larger than twice the error that the file states.  For a grid it is also 1 if an
-    error is larger than half of the largest value of its quantity.
+    The law of a cover is compared with solutions of the contact.  The exit code is 1 if an error is larger than twice
+    the error that the file states (eight times for a table of the coupled solution).  For a grid it is also 1 if an
+    error is larger than half of the largest value of its quantity, or if a node differs from the law by more than 1e-12.
 
     example:
       viscoroll samples
@@ -504,8 +505,7 @@ def validate(arguments: Namespace) -> int:
     Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a
     grid of a material or a cylinder.
 
-    A law is compared with the formulas of its relaxation modes, that of a cover with solves of the
-    contact, and a grid with the law.  The points are the same in every call: their seed is 0.
+    The points are the same in every call: their seed is 0.
     """  # noqa: E501
     from ..tables.law_dataset import Report, check_table
 
@@ -563,9 +563,9 @@ def fmu(arguments: Namespace) -> None:
 
     The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
     For a cover it is the fast law, as with coupled = false.
-    Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
+    Roller: inputs drive force and torque, outputs v, slip, omega, x; for co-simulation and model exchange.
     ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
-    Both provide exact directional derivatives.
+    Both provide directional derivatives, which are exact except over the load of a cover.
 
     example:
       viscoroll samples

@@ -107,7 +107,7 @@ def contact(arguments: Namespace) -> None:
 def stress(arguments: Namespace) -> None:
     """Compute pressure and shear stress along the contact.
 
-    The stresses are given at 101 points of the contact, for one V and one delta (or omega).
+    The stresses are given at 101 points, for one V and one delta (or omega); of a cover p alone.
 
     example:
       viscoroll stress paper-section-5 --V 0.5 --delta -0.01
@@ -277,7 +277,7 @@ def heat(arguments: Namespace) -> None:
     """Find the temperatures at which a cylinder runs.
 
     Each row is a temperature at which rolling loss and heat given off are equal; unstable ones lie between stable ones.
-    The [material] needs the key wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
+    The file needs [cylinder], and [material] the key wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
 
     example:
       viscoroll samples
@@ -408,7 +408,7 @@ def ensemble(arguments: Namespace) -> None:
 def verify(arguments: Namespace) -> int:
     """Check every file of a results store against its checksum (SHA-256).
 
-    The exit code is 1 if a file differs or is missing.
+    The exit code is 1 if a file differs or is missing, or if the run is not finished.
 
     arguments: parsed command line with store, path of the folder of the results.
     Returns that code, True for 1, also for a run that is not finished.

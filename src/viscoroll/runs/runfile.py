@@ -91,10 +91,11 @@ class RunSection(msgspec.Struct, frozen=True):
     design : "random" draws inputs independently, "latin" in a Latin hypercube, "sobol" from a Sobol
     sequence.
     method : "flow" reads the motions from a flow map, for which start speeds alone may be
-    uncertain; "integrate" integrates each motion; "auto" chooses the faster of both.
+    uncertain, without [drive] and unsteady; "integrate" integrates each motion; "auto" takes
+    "flow" for at least 4096 motions where these conditions hold.
     rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
-    rest : speed below which a motion ends at rest, dimensionless; with [cylinder] in m/s.  Default:
-    no such end.
+    rest : speed, dimensionless; with [cylinder] in m/s.  A motion ends at rest where |V| and
+    R |omega| are below it and nothing drives any more.  Default: no such end.
     unsteady : whether the moment contains N dV/dt, the effect of slow changes of the speed (N is
     the added mass).
     rested : whether the cylinder stood still for long before the start; a number is the time for
