@@ -1,6 +1,7 @@
 """Heat: equilibria of temperature, warming, limits, conductance, and the strain of a contact."""
 
 import dataclasses
+import warnings
 from functools import partial
 
 import numpy as np
@@ -256,6 +257,14 @@ def test_conductance_of_film_and_cover():
     for cover in ({}, {"thickness": 0.05}):  # nothing is conducted: the film of the surface alone
         assert close(vr.conductance(R, film=film, **cover), 2.0 * np.pi * R * film, 1e-15)
     assert not vr.uniform_temperature(20.0, h, k).holds
+
+
+def test_cold_rubber_relaxes_slowly_but_has_fast_waves():
+    """V a_T is far above the shear wave speed, V is not: no warning."""
+    heavy = ROLLER.replace(material=dataclasses.replace(RUBBER, density=1100.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        heavy.temperature(0.5, ambient=-45.0, conductance=6.0)
 
 
 # --- bad input ---

@@ -104,7 +104,12 @@ def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
 
 
 def warn_of_contact(
-    roller: Roller, V: Any, extent: tuple[float, float] | None = None, *, motion: bool = False
+    roller: Roller,
+    V: Any,
+    extent: tuple[float, float] | None = None,
+    *,
+    motion: bool = False,
+    a_T: Any = 1.0,
 ) -> None:
     """Warn of contacts at rest longer than the radius, speeds above the shear wave speed, and
     unmeasured frequencies.
@@ -119,12 +124,16 @@ def warn_of_contact(
         are found.
     motion: whether the speeds are of a motion, which :func:`warn_of_start` has examined, so that
         neither the length at rest nor the shear wave speed gives a warning here.
+    a_T: shift factor of each speed: rates at V are those at V a_T at the reference temperature, for
+        which the band is known.
     """
     data = roller.body_data
     if data is None or data.covered_speeds is None or V is None:
         return
     ends = extent or extent_of(V)
-    if not is_outside(ends, data.covered_speeds):
+    reduced = np.multiply(V, a_T)
+    of_band = extent_of(reduced)
+    if not any(is_outside(each, data.covered_speeds) for each in (ends, of_band)):
         return
     if not motion:
         waves = data.wave_speed
@@ -137,8 +146,8 @@ def warn_of_contact(
             "contact",
             "validity(V)",
         )
-    if data.measured_speeds is not None and is_outside(ends, data.measured_speeds):
-        _warn_of_band(data, V)
+    if data.measured_speeds is not None and is_outside(of_band, data.measured_speeds):
+        _warn_of_band(data, reduced)
 
 
 def _absurd_sizes(data: BodyData) -> list[str]:

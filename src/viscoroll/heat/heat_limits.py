@@ -565,8 +565,7 @@ def warming(
         raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
     rows = states.fields(np.repeat(every, times.size), course.ravel(), V_t)
-    # a contact at V that is a_T times slower to relax is as one at a_T V at the reference
-    warn_of_contact(roller, V_t * rows["a_T"])
+    warn_of_contact(roller, V_t, a_T=rows["a_T"])
     values = {name: rows[name] for name in ("temperature", "V", "C_rr", "M", "loss")}
     values |= {"heat": heat, "given_off": off}
     about = {"t": times} | {

@@ -378,8 +378,7 @@ def temperature(
         every = np.arange(states.load.size)
         zeros = zeros_at_speed(states, every, states.V, hottest=HOTTEST if loaded else None)
         rows = states.fields(zeros.state, zeros.theta, states.V[zeros.state])
-    # V a_T: the speed at which the contact at the reference has these rates
-    warn_of_contact(roller, rows["V"] * rows["a_T"])
+    warn_of_contact(roller, rows["V"], a_T=rows["a_T"])
     return Temperatures(states, zeros, rows, labels)
 
 
