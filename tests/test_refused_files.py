@@ -279,7 +279,7 @@ REFUSED = [
                 "brake = 0.01",
                 "V = 0.01\nomega = 0.01",
             ),
-            "line 16 | where inputs other than V0 and omega0 are uncertain": (
+            "line 16 | uncertain inputs other than V0 and omega0": (
                 "a preset",
                 "block = 12",
                 'method = "flow"',

@@ -68,15 +68,15 @@ SAID = [
     ),
     (
         lambda: vr.steady(PAPER, force=0.05, torque=0.07).reason,
-        "force + torque = 0.12 exceeds 0.0847415, the largest rolling moment (at V = 0.235061)",
+        "|force + torque| = 0.12 exceeds 0.0847415, the largest rolling moment (at V = 0.235061)",
     ),
     (
         lambda: vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason,
-        "force + torque/R =  | N/m, the largest rolling moment divided by R (at V = 0. | m/s)",
+        "|force + torque/R| = | N/m, the largest rolling moment divided by R (at V = 0. | m/s)",
     ),
     (
         lambda: vr.steady(PAPER, force=0.3, torque=-0.28).reason,
-        "which exceeds the friction mu = 0.2",
+        "above the friction mu = 0.2",
     ),
     (
         lambda: vr.steady(PAPER, force=-0.175, torque=0.225).reason,

@@ -309,9 +309,8 @@ def _start_faults(
         fastest = max(abs(V0), abs(omega0))
         if fastest > 0.0 and (not one_time or part * fastest > _LEAST_M_OVER_MU * mu):
             faults.append(
-                "it starts in full slip at a creepage of order 1, where the surface speeds of "
-                "cylinder and half-space "
-                "differ and the rolling moment is computed with one speed for both"
+                "it starts in full slip at a creepage of order 1, and while it slides its rolling "
+                "moment is uncertain: it is computed with the speed of the axis for both bodies"
             )
     # the speed at the start, or that at which it begins to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))

@@ -136,7 +136,8 @@ class Diagnosis(NamedTuple):
                     f"no single steady state: |Q|/load = {mu:.6g} equals mu, and {at} every omega "
                     "with slip in the direction of the loads is steady; change the loads or mu"
                 )
-            return f"Q/load = {Q:.6g} is needed {at}, which exceeds the friction mu = {mu:.6g}"
+            needed = f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}"
+            return f"{needed}, above the friction mu = {mu:.6g}: lower the loads"
         if self.elastic:
             if at_rest == 0.0:
                 return (
@@ -154,7 +155,8 @@ class Diagnosis(NamedTuple):
                 f"the {moment}"
             )
         return (
-            f"{name} = {total:.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest {moment}"
+            f"|{name}| = {abs(total):.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest "
+            f"{moment}"
             f" (at V = {V * speed:.6g}{of_speed})"
         )
 

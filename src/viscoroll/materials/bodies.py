@@ -435,7 +435,9 @@ class Cover(Bodies):
         other = check_array("other_thickness", value, above=0.0, high=_THICKEST)
         if part == 1.0:
             raise ParameterError(
-                "other_thickness", other, "left out: part = 1 makes the other body rigid"
+                "other_thickness",
+                other,
+                "left out, or part < 1 be given: at part = 1, the default, the other body is rigid",
             )
         if other.shape != thickness.shape:
             raise shape_error("other_thickness", other.shape, f"{thickness.shape}, as thickness")

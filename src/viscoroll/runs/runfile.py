@@ -338,8 +338,8 @@ def read_run(path: str | PathLike[str]) -> Run:
             path,
             "run",
             "method",
-            "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, "
-            "and where inputs other than V0 and omega0 are uncertain",
+            "method = 'flow': must be 'auto' or 'integrate' if the file has [drive], unsteady = "
+            "true, or uncertain inputs other than V0 and omega0",
         )
     _check_inputs(run)
     return run
