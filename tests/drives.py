@@ -9,15 +9,15 @@ from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 
-ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+ROLLER = vr.Scene(11.0, 10.0, 0.3, 0.5)
 #: the paper's, in which a time of 1/gamma is 1
-PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
+PAPER = vr.Scene(11.0, 2.91, 0.2, 1.0)
 #: whose law is unsteady
 RUBBER = ROLLER.replace(gamma=18.0)
 #: fits of src/viscoroll/datasets/dma.csv, and a roller of them as of docs/validity.md: 0.1 m,
 #: T_ref 3 s, so that V = 30 is 1 m/s
 DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
-ON_DMA = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
+ON_DMA = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9)
 
 
 class Wave(NamedTuple):
@@ -50,7 +50,7 @@ def solved(scene, V0, omega0, t, force=0.0, torque=0.0, unsteady=False):
     """V and omega at times t by Radau's method on the equations of motion with the bound law; of
     two bodies of one material also with N.
     """
-    law = vr.law(scene)
+    law = scene.law()
 
     def rates(_, speeds):
         loads = law(*speeds)

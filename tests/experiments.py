@@ -37,14 +37,14 @@ def noise(seed, values, sigma):
 
 def resistance(V=HUMP, seed=None):
     """M over speed."""
-    M = roller().contact(V, delta=0.0, fields="M").M
+    M = roller().contact(V, delta=0.0).M
     return vr.Resistance(V, noise(seed, M, 0.01), sigma=0.01)
 
 
 def traction(seed=None):
     """Q over creep at 0.1 m/s."""
     delta = np.linspace(-0.06, 0.06, 21)
-    Q = roller().contact(0.1, delta=delta, fields="Q").Q
+    Q = roller().contact(0.1, delta=delta).Q
     return vr.Traction(0.1, delta, noise(seed, Q, 1.0), sigma=1.0)
 
 

@@ -3,8 +3,6 @@
 import numpy as np
 from closeness import close
 
-import viscoroll as vr
-
 
 def decay_time(scene):
     """1/rate of V at low speed; of the sliding phase where alpha = 1."""
@@ -15,7 +13,7 @@ def decay_time(scene):
 def beside(scene, V0, omega0, t, rtol=1e-6):
     """Motions by the map, whose speeds are those of the integrator to the error that it states."""
     mapped, exact = (
-        vr.ensemble(scene, V0, omega0, t, method=method, rtol=rtol, fields=("V", "omega"))
+        scene.ensemble(V0, omega0, t, method=method, rtol=rtol, fields=("V", "omega"))
         for method, rtol in (("flow", rtol), ("integrate", 1e-11))
     )
     by = mapped.flow

@@ -19,11 +19,11 @@ POSITIVE = """R m T_epsilon T_sigma load g T_ref density thickness other_thickne
 high E0 G0 G_inf bulk rtol rest speed storage loss relaxation tau strain sigma factor T"""
 #: range of arguments, as symbols.csv has it -> names of those that have no symbol
 RANGES = {
-    "> 0": POSITIVE.split(),
-    ">= 0": ["g", "k", "K", "G", "beta", "rested", "J", "E", "misfit"],
-    "(-1, 0.5]": ["nu", "nu_instant"],
-    "[0, 1]": ["share", "level"],
-    "> -273.15": ["temperature", "T0", "reference"],
+    "> 0": POSITIVE,
+    ">= 0": "g k K G beta rested J E misfit",
+    "(-1, 0.5]": "nu nu_instant",
+    "[0, 1]": "share level",
+    "> -273.15": "temperature T0 reference",
 }
 #: range -> what is outside of it
 OUTSIDE = {
@@ -36,7 +36,7 @@ OUTSIDE = {
     "> -273.15": (-300.0,),
 }
 RANGE_OF = {name: symbol.range for name, symbol in SYMBOLS.items()} | {
-    name: bounds for bounds, names in RANGES.items() for name in names
+    name: bounds for bounds, names in RANGES.items() for name in names.split()
 }
 #: first word of an annotation -> what is not of that kind
 KINDS = {

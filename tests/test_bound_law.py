@@ -125,12 +125,16 @@ def test_jitted_code_with_a_law_inside_is_not_cached(tmp_path):
     cached beside it.
     """
     (tmp_path / "user.py").write_text(
-        "import numba, viscoroll as vr\n"
-        "law = vr.law(vr.Scene(alpha=7.0, kappa=50.0, mu=0.2)).jitted\n"
-        "@numba.njit(cache=True)\n"
-        "def traction(V, omega):\n    return law(V, omega).Q\n"
-        "@numba.njit(cache=True)\n"
-        "def slip(V, omega):\n    return omega - V\n"
+        """\
+import numba, viscoroll as vr
+law = vr.law(vr.Scene(alpha=7.0, kappa=50.0, mu=0.2)).jitted
+@numba.njit(cache=True)
+def traction(V, omega):
+    return law(V, omega).Q
+@numba.njit(cache=True)
+def slip(V, omega):
+    return omega - V
+"""
     )
     first, second = (runpy.run_path(str(tmp_path / "user.py")) for _ in range(2))
     assert first["traction"](0.3, 0.3001) == second["traction"](0.3, 0.3001)

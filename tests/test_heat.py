@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from refusals import refused
+from refusals import each, refused
 from scipy.integrate import trapezoid
 
 import viscoroll as vr
@@ -251,9 +251,9 @@ def test_conductance_of_film_and_cover():
         "insulated": h * h / (3.0 * k) + h / film,
         "cooled": 0.5 * h * h * (1.0 + 0.5 * film * h / k) / (k + film * h) - h * h / (6.0 * k),
     }
-    for core, each in mean.items():
+    for core, known in mean.items():
         found = vr.conductance(R, film=film, thickness=h, conductivity=k, core=core)
-        assert close(found, 2.0 * np.pi * (R - 0.5 * h) * h / each, 1e-13)
+        assert close(found, 2.0 * np.pi * (R - 0.5 * h) * h / known, 1e-13)
     for cover in ({}, {"thickness": 0.05}):  # nothing is conducted: the film of the surface alone
         assert close(vr.conductance(R, film=film, **cover), 2.0 * np.pi * R * film, 1e-15)
     assert not vr.uniform_temperature(20.0, h, k).holds
@@ -270,34 +270,35 @@ def test_cold_rubber_relaxes_slowly_but_has_fast_waves():
 # --- bad input ---
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: vr.presets.RUBBER_CYLINDER.temperature(1.0, **WARM), "given to the Material"),
-        (lambda: with_shift(lambda T: T + 300.0).temperature(1.0, **COLD), "rises at"),
-        (lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD), "above ambient"),
-        (lambda: vr.conductance(0.1, thickness=0.2), "below R"),
-        (
-            lambda: (
-                with_shift(WLF, thickness=0.03).replace(load=[1e4, 2e4]).temperature(1.0, **WARM)
-            ),
-            "load has shape",
+REFUSED = each(
+    lambda roller: roller.temperature(1.0, **WARM),
+    {
+        "given to the Material": vr.presets.RUBBER_CYLINDER,
+        "rises at": with_shift(lambda T: T + 300.0),
+        "load has shape": with_shift(WLF, thickness=0.03).replace(load=[1e4, 2e4]),
+        "another one at each temperature": with_shift(
+            WLF, vertical_shift="entropic", thickness=0.03
         ),
-        (
-            lambda: with_shift(WLF, vertical_shift="entropic", thickness=0.03).temperature(
-                1.0, **WARM
-            ),
-            "another one at each temperature",
-        ),
-        (lambda: beside(temperature=60.0).temperature(1.0, **WARM), "relaxes too"),
-        (lambda: beside(thickness=0.01).temperature(1.0, **WARM), "relaxes too"),
-        (lambda: beside(shift=vr.WLF(T0=-60.0)).temperature(1.0, **WARM), "relaxes too"),
-        (lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0), "one a_T for each"),
-        (lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0), "a_T = "),
-    ],
+        "relaxes too": [
+            beside(temperature=60.0),
+            beside(thickness=0.01),
+            beside(shift=vr.WLF(T0=-60.0)),
+        ],
+    },
+) + each(
+    None,
+    {
+        "above ambient": lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD),
+        "below R": lambda: vr.conductance(0.1, thickness=0.2),
+        "one a_T for each": lambda: vr.ShiftFactors((0.0, 20.0), (1.0,), 0.0),
+        "a_T = ": lambda: vr.ShiftFactors((0.0,), (-1.0,), 0.0),
+    },
 )
-def test_refused(call, words):
-    refused(call, words)
+
+
+@pytest.mark.parametrize(("call", "words", "error"), REFUSED)
+def test_refused(call, words, error):
+    refused(call, *words, error=error)
 
 
 def test_beyond_the_ranges_is_named():
@@ -327,12 +328,31 @@ def test_run_file_with_uncertain_surroundings(tmp_path):
 
     path = tmp_path / "run.toml"
     path.write_text(
-        "[cylinder]\nR = 0.1\nm = 60.0\nmu = 0.6\nload = 2e4\n[base]\nE = inf\n[material]\nE = "
-        "3e6\nnu = 0.49\n"
-        "prony = { E = [2.0, 40.0], tau = [1.0, 1e-2] }\nT_ref = 0.02\nreference = 20.0\n"
-        "wlf = { T0 = 0.0, C1 = 8.86, C2 = 101.6 }\n[start]\nV0 = 3.0\nomega0 = 30.0\n[run]\nn = "
-        "8\nt = [1.0]\n[heat]\n"
-        'ambient = { distribution = "uniform", loc = 0.0, scale = 30.0 }\nconductance = 6.0\n'
+        """\
+[cylinder]
+R = 0.1
+m = 60.0
+mu = 0.6
+load = 2e4
+[base]
+E = inf
+[material]
+E = 3e6
+nu = 0.49
+prony = { E = [2.0, 40.0], tau = [1.0, 1e-2] }
+T_ref = 0.02
+reference = 20.0
+wlf = { T0 = 0.0, C1 = 8.86, C2 = 101.6 }
+[start]
+V0 = 3.0
+omega0 = 30.0
+[run]
+n = 8
+t = [1.0]
+[heat]
+ambient = { distribution = "uniform", loc = 0.0, scale = 30.0 }
+conductance = 6.0
+"""
     )
     run = vr.runs.read_run(path)
     assert run.inputs.uncertain == ("ambient",)

@@ -53,4 +53,4 @@ def test_a_type_error_of_a_users_function_stays_as_it_is():
         return dict(t, speed=1.0) if t < 0.0 else torque(time=t)
 
     with pytest.raises(TypeError, match=r"argument 'time'$"):
-        vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, 1.0, torque=torque)
+        vr.presets.RUBBER_CYLINDER.roll(1.0, 10.0, 1.0, torque=torque)

@@ -212,10 +212,10 @@ REFUSED += each(
     None,
     {
         "shapes of a Schedule = times (), values ()": lambda: vr.Schedule(0.0, 1.0),
-        "material": lambda: vr.law(MANY_SCENES),
-        "m has shape (2,): must be one number": lambda: vr.law(
-            PAPER_CYLINDER.replace(m=[30.0, 40.0])
-        ),
+        "material": MANY_SCENES.law,
+        "m has shape (2,): must be one number": lambda: PAPER_CYLINDER.replace(
+            m=[30.0, 40.0]
+        ).law(),
         "at most": lambda: vr.tables.build(
             PAPER, np.arange(1.0, 10000.0), delta=np.arange(10000.0)
         ),
@@ -223,7 +223,7 @@ REFUSED += each(
         "density needs a Cylinder: a Scene has no wave speed": lambda: PAPER.validity(
             1.0, density=1130.0
         ),
-        "within the motion": lambda: vr.roll(PAPER, 1.5, 0.5, 3e-3).at(3.1e-3),
+        "within the motion": lambda: PAPER.roll(1.5, 0.5, 3e-3).at(3.1e-3),
         "quantiles = 0.5: must be a list of numbers": lambda: vr.ensemble(**FREE).summary(
             quantiles=0.5
         ),
@@ -256,5 +256,5 @@ def test_errors_of_input_are_value_errors():
 def test_an_error_has_the_name_of_the_argument(roller, name):
     words = r"^the material \(alpha\) has shape .*: must be a single"
     with pytest.raises(vr.ParameterError, match=words) as raised:
-        vr.contact(roller, 0.5, delta=0.01, method="coupled")
+        roller.contact(0.5, delta=0.01, method="coupled")
     assert raised.value.name == name

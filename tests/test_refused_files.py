@@ -1,5 +1,7 @@
 """Bad files: one line with the file, the place in it, and what is allowed."""
 
+from functools import partial
+
 import pytest
 from calls import (
     CYLINDER_FILE,
@@ -26,7 +28,6 @@ from refusals import each, refused
 import viscoroll as vr
 from viscoroll.core import write_dataset
 from viscoroll.materials.checked_netcdf import material_as_dataset
-from viscoroll.materials.material_toml import read_materials
 from viscoroll.presets import read_roller
 from viscoroll.runs import read_run
 
@@ -46,10 +47,11 @@ def of_material(dataset):
     return vr.Material.from_netcdf("given.nc")
 
 
+files = partial(each, error=vr.FileError)
 OF_LAW = '[material]\nfile = "given.nc"\n'
 SOFT_DATA = material_as_dataset(SOFT)
 REFUSED = [
-    *each(
+    *files(
         of_dma,
         {
             "'1e999' is too large, above 1.8e308": "omega [rad/s];E' [Pa];E'' "
@@ -59,9 +61,8 @@ REFUSED = [
             "unit 'Hz and rad/s' is not a unit of frequency | unit 'MPa and kPa' is not a unit "
             "of storage": "f [Hz],E' [MPa],E'' [MPa]\nrad/s,kPa,kPa\n1,1,1\n2,1,1\n",
         },
-        vr.FileError,
     ),
-    *each(
+    *files(
         of_materials,
         {
             "file.toml | line 2 | E = inf | for a viscoelastic": RUBBER_FILE.replace(
@@ -77,15 +78,17 @@ REFUSED = [
             "file.toml | line 1: [material] needs nu": "\ufeff[material]\nE = 1.0",
             "line 2 | none.nc": '[material]\nfile = "none.nc"\n',
         },
-        vr.FileError,
     ),
-    *each(
+    *files(
         of_grid,
         {
             "given.nc | V = | shape (0,) | must be real numbers, at least one": OTHER_GRID.isel(
                 V=slice(0)
             ),
             "given.nc: is not a grid of a law, since it has neither M": OTHER_GRID.drop_vars("M"),
+            "must have V(V), delta(delta), Q(V, delta)": OTHER_GRID.assign(
+                Q=OTHER_GRID.Q.isel(V=0)
+            ),
             "given.nc | attribute units of Q = N m2 | N/m": OTHER_GRID.assign(
                 Q=OTHER_GRID.Q.assign_attrs(units="N m2")
             ),
@@ -94,9 +97,8 @@ REFUSED = [
             ),
             "is not a grid of a law, since V does not increase over two": OTHER_GRID.isel(V=[0]),
         },
-        vr.FileError,
     ),
-    *each(
+    *files(
         None,
         {
             "the table for x.nc: variable 'Q' has units = 'N': must be '1'": lambda: vr.tables.save(
@@ -134,14 +136,14 @@ REFUSED = [
             "line 2: [start] V0 is missing: must be a number": lambda: read_run(
                 file('preset = "paper-section-5"\n[start]\nomega0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
             ),
-            "given.nc | law_schema = 2, but viscoroll": lambda: vr.load_law(
-                netcdf(law_file().assign_attrs(law_schema=2))
+            "given.nc | law_schema = 2, but viscoroll": lambda: of_grid(
+                law_file().assign_attrs(law_schema=2)
             ),
-            "given.nc | its numbers do not have the checksum": lambda: vr.load_law(
-                netcdf(law_file().assign_attrs(sha256_of_numbers="0" * 64))
+            "given.nc | its numbers do not have the checksum": lambda: of_grid(
+                law_file().assign_attrs(sha256_of_numbers="0" * 64)
             ),
             "given.nc: is damaged or was edited: | attribute material": [
-                lambda: vr.load_law(netcdf(law_file().assign_attrs(material="not TOML"))),
+                lambda: of_grid(law_file().assign_attrs(material="not TOML")),
                 lambda: [
                     netcdf(law_file().assign_attrs(material="not TOML")),
                     of_materials(OF_LAW),
@@ -151,9 +153,6 @@ REFUSED = [
                 lambda: vr.load_law(netcdf(law_file(), without="material")),
                 lambda: [netcdf(law_file(), without="material"), of_materials(OF_LAW)],
             ],
-            "must have V(V), delta(delta), Q(V, delta)": lambda: of_grid(
-                OTHER_GRID.assign(Q=OTHER_GRID.Q.isel(V=0))
-            ),
             "(it has no attribute viscoroll_table = 'grid'): vr.tables.build": lambda: (
                 vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc")
             ),
@@ -163,20 +162,8 @@ REFUSED = [
             "coordinate 'alpha' must be > 0 and increase strictly": lambda: vr.load_law(
                 netcdf(OTHER_GRID.expand_dims(alpha=[3.0, 2.0])), alpha=2.5
             ),
-            "is damaged": lambda: vr.load_law(
-                netcdf(vr.tables.law(PAPER.alpha).assign(lam=("row", ["a", "b"])))
-            ),
-            "is incomplete, as 'nu' is missing; write the file again by Material": lambda: (
-                of_material(SOFT_DATA.drop_vars("nu"))
-            ),
-            "given = 'both': must be relaxation or creep": lambda: of_material(
-                SOFT_DATA.assign_attrs(given="both")
-            ),
-            "has a wrong value (nu = 0.7: must be in (-1, 0.5])": lambda: of_material(
-                SOFT_DATA.assign(nu=0.7)
-            ),
-            "attribute schema = 'other', not 'viscoroll material 1'": lambda: of_material(
-                SOFT_DATA.assign_attrs(schema="other")
+            "is damaged": lambda: of_grid(
+                vr.tables.law(PAPER.alpha).assign(lam=("row", ["a", "b"]))
             ),
             "given.nc: is not a netCDF-4 (HDF5) file": [
                 lambda: vr.Material.from_netcdf(file("E = 1", "given.nc")),
@@ -184,15 +171,15 @@ REFUSED = [
             ],
             "line 2 | law of a pair of materials: it must be that of one": lambda: [
                 netcdf(vr.tables.law(SOFT, STEEL)),
-                read_roller(file('[material]\nfile = "given.nc"\n' + ROLLER_FILE)),
+                of_roller(OF_LAW + ROLLER_FILE),
             ],
             "line 2 | without units": lambda: [
                 netcdf(law_file()),
-                read_roller(file('[material]\nfile = "given.nc"\n' + ROLLER_FILE)),
+                of_roller(OF_LAW + ROLLER_FILE),
             ],
             "line 2: [base] | dma.toml | section [material] is missing": lambda: [
                 file("[scene]\nalpha = 2.0\n", "dma.toml"),
-                read_materials(file('[base]\nfile = "dma.toml"\n')),
+                of_materials('[base]\nfile = "dma.toml"\n'),
             ],
             "V is in m/s and km/h: must be in a unit of the dimension of m s-1": lambda: data(
                 "V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n"
@@ -209,9 +196,21 @@ REFUSED = [
             ],
             "cannot be read": lambda: read_roller("missing.toml"),
         },
-        vr.FileError,
     ),
-    *each(
+    *files(
+        of_material,
+        {
+            "is incomplete, as 'nu' is missing; write the file again by Material": (
+                SOFT_DATA.drop_vars("nu")
+            ),
+            "given = 'both': must be relaxation or creep": SOFT_DATA.assign_attrs(given="both"),
+            "has a wrong value (nu = 0.7: must be in (-1, 0.5])": SOFT_DATA.assign(nu=0.7),
+            "attribute schema = 'other', not 'viscoroll material 1'": SOFT_DATA.assign_attrs(
+                schema="other"
+            ),
+        },
+    ),
+    *files(
         measured,
         {
             "line 2: prior = 3: must be a section [prior]": ("[cylinder]", "prior = 3\n[cylinder]"),
@@ -220,10 +219,18 @@ REFUSED = [
                 'kind = "resistance"',
                 "",
             ),
+            "unknown key 'sigmma' | did you mean 'sigma' | line 23": ("sigma", "sigmma"),
+            "has no column 'moment'; its columns are | force": ("moment [N m/m]", "force [N]"),
+            "[data.columns] unknown key 'Q' | V, M, F": (
+                'M = "moment"',
+                'M = "moment", Q = "moment"',
+            ),
+            "no.csv | cannot be read": ('"drum.csv"', '"no.csv"'),
+            "unknown E = 3000000.0 | (low, high)": ("E = [3e5, 3e7]", "E = 3e6"),
+            "unknown key 'more'": ("[[data]]", "[more]\n[[data]]"),
         },
-        vr.FileError,
     ),
-    *each(
+    *files(
         of_roller,
         {
             "line 1: [scene] needs alpha": "[scene]\nkappa = 2.0\nmu = 0.1",
@@ -235,9 +242,8 @@ REFUSED = [
             "file.toml | preset: 'paper' is not | paper-section-5": 'preset = "paper"',
             "file.toml | not TOML | line 1": "[scene\nalpha = 1",
         },
-        vr.FileError,
     ),
-    *each(
+    *files(
         run,
         {
             "line 4: [scene] mu: unknown key 'distribtion'; did you mean 'distribution'?": (
@@ -314,9 +320,8 @@ REFUSED = [
                 "V = 0.01",
             ),
         },
-        vr.FileError,
     ),
-    *each(
+    *files(
         of_law_source,
         {
             "file.toml | section [material] is missing": [
@@ -324,22 +329,6 @@ REFUSED = [
                 "[other]\nx = 1",
             ],
         },
-        vr.FileError,
-    ),
-    *each(
-        measured,
-        {
-            "unknown key 'sigmma' | did you mean 'sigma' | line 23": ("sigma", "sigmma"),
-            "has no column 'moment'; its columns are | force": ("moment [N m/m]", "force [N]"),
-            "[data.columns] unknown key 'Q' | V, M, F": (
-                'M = "moment"',
-                'M = "moment", Q = "moment"',
-            ),
-            "no.csv | cannot be read": ('"drum.csv"', '"no.csv"'),
-            "unknown E = 3000000.0 | (low, high)": ("E = [3e5, 3e7]", "E = 3e6"),
-            "unknown key 'more'": ("[[data]]", "[more]\n[[data]]"),
-        },
-        vr.ViscorollError,
     ),
 ]
 

@@ -29,16 +29,16 @@ def results():
     V = np.geomspace(1e-2, 1.0, 5)
     dma = vr.read_dma(vr.datasets.path("dma.csv"))
     return {
-        "contact": vr.contact(SCENE, V[:, None], delta=np.linspace(-0.02, 0.02, 4)),
+        "contact": SCENE.contact(V[:, None], delta=np.linspace(-0.02, 0.02, 4)),
         "contact in SI": ROLLER.contact(V, delta=0.01),
-        "stress": vr.stress(SCENE, np.linspace(-0.2, 0.6, 21), 0.5, delta=-0.01),
-        "driven": vr.roll(SCENE, 0.0, 0.0, t, torque=vr.Schedule([0.0, 2e-3], [0.0, 0.1])),
+        "stress": SCENE.stress(np.linspace(-0.2, 0.6, 21), 0.5, delta=-0.01),
+        "driven": SCENE.roll(0.0, 0.0, t, torque=vr.Schedule([0.0, 2e-3], [0.0, 0.1])),
         "motion in SI": ROLLER.roll(1.0, 0.0, np.linspace(0.0, 1.0, 9)),
-        "scenes each": vr.ensemble(
-            SCENE.replace(mu=[0.1, 0.2, 0.3]), 1.0, 0.5, t, fields=FIELDS, rest=1e-3
+        "scenes each": SCENE.replace(mu=[0.1, 0.2, 0.3]).ensemble(
+            1.0, 0.5, t, fields=FIELDS, rest=1e-3
         ),
         "ensemble in SI": ROLLER.ensemble(np.linspace(0.5, 1.5, 3), 0.0, [0.1, 0.2]),
-        "steady": vr.steady(SCENE, slope=np.radians([1.0, 2.0, 30.0])),
+        "steady": SCENE.steady(slope=np.radians([1.0, 2.0, 30.0])),
         "fit": vr.fit_prony(dma, modes=3, misfit=0.2),
         "relaxation": vr.RelaxationModulus([0.1, 1.0], [2e6, 1e6]),
         "material": ROLLER.material,

@@ -34,14 +34,14 @@ pytestmark = pytest.mark.usefixtures("here")
 
 SAID = [
     (
-        lambda: vr.contact(
-            ROLLER, pd.Series([1.0, 2.0, 3.0], index=pd.date_range("2026", periods=3)), delta=0.0
+        lambda: ROLLER.contact(
+            pd.Series([1.0, 2.0, 3.0], index=pd.date_range("2026", periods=3)), delta=0.0
         ).plot(),
         "Figure",
     ),
     (
-        lambda: vr.contact(
-            ROLLER, LABELLED, delta=xr.DataArray([0.1, 0.2], dims="of", coords={"of": ["x", "y"]})
+        lambda: ROLLER.contact(
+            LABELLED, delta=xr.DataArray([0.1, 0.2], dims="of", coords={"of": ["x", "y"]})
         ).plot(),
         "Figure",
     ),
@@ -67,7 +67,7 @@ SAID = [
         "0.5 N m m-1 - 0.1 omega | a function of t",
     ),
     (
-        lambda: vr.steady(PAPER, force=0.05, torque=0.07).reason,
+        lambda: PAPER.steady(force=0.05, torque=0.07).reason,
         "|force + torque| = 0.12 exceeds 0.0847415, the largest rolling moment (at V = 0.235061)",
     ),
     (
@@ -75,15 +75,15 @@ SAID = [
         "|force + torque/R| = | N/m, the largest rolling moment divided by R (at V = 0. | m/s)",
     ),
     (
-        lambda: vr.steady(PAPER, force=0.3, torque=-0.28).reason,
+        lambda: PAPER.steady(force=0.3, torque=-0.28).reason,
         "above the friction mu = 0.2",
     ),
     (
-        lambda: vr.steady(PAPER, force=-0.175, torque=0.225).reason,
+        lambda: PAPER.steady(force=-0.175, torque=0.225).reason,
         "no single steady state: |Q|/load = 0.2 equals mu",
     ),
     (
-        lambda: vr.steady(PAPER.replace(alpha=1.0)).reason,
+        lambda: PAPER.replace(alpha=1.0).steady().reason,
         "no isolated steady speed: elastic bodies roll without resistance, so every V is steady",
     ),
     (
@@ -125,12 +125,12 @@ WARNED = {
     ],
     "too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a "
     "tenth of the distance": [
-        lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0),
-        lambda: vr.ensemble(UNSURE, 3.0, 3.0, 1.0),
-        lambda: vr.ensemble(ONE.replace(alpha=[2.0, 11.0]), 1.0, 1.0, 1.0),
+        lambda: DMA_ROLLER.roll(3.0, 3.0, 1.0),
+        lambda: UNSURE.ensemble(3.0, 3.0, 1.0),
+        lambda: ONE.replace(alpha=[2.0, 11.0]).ensemble(1.0, 1.0, 1.0),
     ],
     "it starts in full slip at a creep": [
-        lambda: vr.roll(vr.Scene(11.0, 10.0, 0.02, 0.1), 0.5, -0.5, 0.001)
+        lambda: vr.Scene(11.0, 10.0, 0.02, 0.1).roll(0.5, -0.5, 0.001)
     ],
     "the model does not hold for this contact: speeds exceed the shear wave speed": [
         lambda: ROLLER.contact([1.0, 99.0], delta=0.0)
@@ -158,9 +158,9 @@ SILENT = {
     ],
     "": [
         lambda: vr.Arrhenius(energy=8e4, T0=180.0)(-60.0),
-        lambda: vr.roll(DMA_ROLLER, 30.0, 30.0, 1.0),
-        lambda: vr.roll(DMA_ROLLER, 0.0, 0.0, 1.0),
-        lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0, force=0.1),
+        lambda: DMA_ROLLER.roll(30.0, 30.0, 1.0),
+        lambda: DMA_ROLLER.roll(0.0, 0.0, 1.0),
+        lambda: DMA_ROLLER.roll(3.0, 3.0, 1.0, force=0.1),
         lambda: ROLLER.contact([1.0, 9.0], delta=0.0),
         lambda: ROLLER.replace(material=replace(ROLLER.material, density=None)).contact(
             99.0, delta=0.0

@@ -107,8 +107,10 @@ def test_all_equilibria_of_random_materials():
     rng = np.random.default_rng(2)
     for n in range(12):
         modes = int(rng.integers(1, 6))
-        series = vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
-        other = vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
+        series, other = (
+            vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
+            for _ in range(2)
+        )
         scene = series_scene(
             series if n % 2 else vr.Bodies(series, other, rng.uniform(0.1, 0.9)), mu=0.03
         )

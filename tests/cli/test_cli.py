@@ -94,12 +94,13 @@ def told_by_shell(line):
 
 def test_help_imports_nothing_heavy():
     printed(
-        "import sys\n"
-        "from viscoroll.cli import main\n"
-        f"for command in {COMMANDS!r}: assert main([*command.split(), '--help']) == 0\n"
-        "assert main(['--help']) == 0\n"
-        "heavy = {'numpy', 'numba', 'scipy', 'xarray', 'matplotlib', 'h5py'} & sys.modules.keys()\n"
-        "assert not heavy, heavy"
+        f"""\
+import sys
+from viscoroll.cli import main
+for command in {COMMANDS!r}: assert main([*command.split(), '--help']) == 0
+assert main(['--help']) == 0
+heavy = {{'numpy', 'numba', 'scipy', 'xarray', 'matplotlib', 'h5py'}} & sys.modules.keys()
+assert not heavy, heavy"""
     )
 
 
@@ -221,9 +222,9 @@ PAPER = vr.presets.PAPER_SECTION_5
 V = np.array([-1.0, 0.0, 1.0, 2.0])[:, None]
 OMEGA = np.geomspace(1e-3, 1.0, 4)
 SAME = {
-    "contact PAPER --V -1:1:3,2 --omega 1e-3:1:4:log": lambda _: vr.contact(PAPER, V, omega=OMEGA),
-    "stress PAPER --V -0.5 --delta 0.01": lambda data: vr.stress(
-        PAPER, data["x"].values, -0.5, delta=0.01
+    "contact PAPER --V -1:1:3,2 --omega 1e-3:1:4:log": lambda _: PAPER.contact(V, omega=OMEGA),
+    "stress PAPER --V -0.5 --delta 0.01": lambda data: PAPER.stress(
+        data["x"].values, -0.5, delta=0.01
     ),
 }
 

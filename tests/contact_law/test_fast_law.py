@@ -16,7 +16,10 @@ from pipeline.evidence.measure import covers
 ONE, THREE = (covers.MATERIALS[name] for name in ("one", "three"))
 
 
-@pytest.mark.parametrize("index", [0, 5, 15, 20])
+some = pytest.mark.parametrize("index", [0, 5, 15, 20])
+
+
+@some
 def test_no_state_makes_energy(index):
     _, scene, _ = covers.scenes()[index]
     V = np.logspace(-4.0, 1.0, 6)[:, None]
@@ -28,7 +31,7 @@ def test_no_state_makes_energy(index):
     assert np.nanmax(s.loss.efficiency) <= 1.0
 
 
-@pytest.mark.parametrize("index", [0, 5, 15, 20])
+@some
 def test_onsets_lie_unlike_far_from_free_rolling(index):
     """As in the coupled solution, and full slip begins there, of motions of either direction."""
     _, scene, u = covers.scenes()[index]
@@ -96,7 +99,7 @@ def test_the_stated_errors_bound_those_beside_the_coupled_solution(index):
 def test_motions_solve_the_equations_by_the_law():
     """Both onsets lie unlike far, and change with the speed."""
     layer = vr.Cover(ONE, nu=0.3, thickness=0.5, on="base")
-    scene = vr.Scene(material=layer, kappa=4.0, mu=0.3, gamma=1.0, j=0.5, coupled=False)
+    scene = vr.Scene(material=layer, kappa=4.0, mu=0.3, gamma=1.0, coupled=False)
     exact = solved(scene, 1.0, 1.0, [4.0], torque=-0.1)
     motion = scene.roll(1.0, 1.0, [4.0], torque=-0.1, rtol=1e-10)
     assert close((motion.V, motion.omega), exact, tol.COVER_MOTION)

@@ -15,7 +15,7 @@ def example(name):
 
 def test_solve_ivp_is_roll():
     found = example("law_solve_ivp")
-    m = vr.roll(vr.presets.RUBBER_ROLLER, 0.5, 0.0, found["t"], rtol=1e-11)
+    m = vr.presets.RUBBER_ROLLER.roll(0.5, 0.0, found["t"], rtol=1e-11)
     assert found["found"].success
     assert close(found["V"], m.V, tol.EXAMPLE_RADAU, scale=1.0)
     assert close(found["omega"], m.omega, tol.EXAMPLE_RADAU, scale=1.0)
@@ -23,7 +23,7 @@ def test_solve_ivp_is_roll():
 
 def test_every_rope_carries_the_resistance_behind_it():
     found = example("law_multibody")
-    M = [vr.contact(found[name], 0.5, delta=0.0).M for name in ("warm", "cold")]
+    M = [found[name].contact(0.5, delta=0.0).M for name in ("warm", "cold")]
     force = found["stiffness"] * found["stretch"]
     assert close(force, [sum(M), M[1]], tol.EXAMPLE_TRAIN)
     assert close(found["V"], 0.5, tol.EXAMPLE_TRAIN)

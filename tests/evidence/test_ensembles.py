@@ -20,10 +20,9 @@ def test_a_cluster_gives_the_same_files(tmp_path):
     alone = tmp_path / "alone.zarr"
     store = tmp_path / "store.zarr"
     run_ensemble(read_run(tmp_path / "run.toml"), alone)
-    command = ["-m", "viscoroll", "ensemble", "run.toml", "-o", "store.zarr"]
-    command += ["--cluster", "local", "--threads", "2"]
+    command = "-m viscoroll ensemble run.toml -o store.zarr --cluster local --threads 2"
     process = subprocess.Popen(
-        [sys.executable, *command],
+        [sys.executable, *command.split()],
         cwd=tmp_path,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,

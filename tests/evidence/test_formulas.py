@@ -33,7 +33,7 @@ def test_persson_is_the_integral_of_the_loss_modulus():
 def test_jonkers_of_little_loss_is_an_elastic_bed_of_columns():
     """C_rr = pi/2 tan(delta) (pi/4)^(4/3) (P h/(E D^2))^(1/3), and half a wave over the contact."""
     h = 0.006
-    rubber = vr.Material(E=4e6, nu=0.49, prony=vr.Prony([1e-4], [1e-2]))
+    rubber = vr.Material(4e6, 0.49, vr.Prony([1e-4], [1e-2]))
     found = jonkers(rubber, h, R, LOAD, 1.0)
     assert close(found.length**3, 4.0 * np.pi * LOAD * h * R / rubber.E, tol.FORMULA_SLOW)
     lost = rubber.tan_delta(np.pi * 1.0 / found.length)

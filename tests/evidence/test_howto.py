@@ -81,11 +81,5 @@ def test_run_file_pages_can_be_followed(here, capsys):
                     file.write_text(file.read_text().replace("n = 20_000", "n = 64"))
     assert "mm" in capsys.readouterr().out
     made = {path.name for path in here.iterdir()}
-    assert made == {
-        "samples",
-        "results.zarr",
-        "results.png",
-        "results.nc",
-        "sensitivity.png",
-        "sensitivity.nc",
-    }
+    names = "samples results.zarr results.png results.nc sensitivity.png sensitivity.nc"
+    assert made == set(names.split())

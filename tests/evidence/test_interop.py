@@ -34,39 +34,54 @@ PROGRAMS = {
         "true",
     ),
     "octave": (
-        "contact = read_law('law.nc'); x = csvread('states.csv');\n"
-        "for n = 1:rows(x)\n"
-        "  s = contact(x(n, 1), x(n, 2), x(n, 3), x(n, 4));\n"
-        "  printf('%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\\n', struct2cell(s){:});\n"
-        "end\n",
+        """\
+contact = read_law('law.nc'); x = csvread('states.csv');
+for n = 1:rows(x)
+  s = contact(x(n, 1), x(n, 2), x(n, 3), x(n, 4));
+  printf('%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\\n', struct2cell(s){:});
+end
+""",
         "octave-cli program",
         "octave-cli --eval 'pkg load netcdf'",
     ),
     "R": (
-        'source("read_law.R"); contact <- read_law("law.nc"); x <- read.csv("states.csv", header = '
-        "FALSE)\n"
-        "for (n in seq_len(nrow(x))) {\n"
-        "  s <- contact(x[n, 1], x[n, 2], x[n, 3], x[n, 4])\n"
-        '  cat(sprintf("%.17g", unlist(s)), sep = ","); cat("\\n")\n'
-        "}\n",
+        """\
+source("read_law.R"); contact <- read_law("law.nc"); x <- read.csv("states.csv", header = FALSE)
+for (n in seq_len(nrow(x))) {
+  s <- contact(x[n, 1], x[n, 2], x[n, 3], x[n, 4])
+  cat(sprintf("%.17g", unlist(s)), sep = ","); cat("\\n")
+}
+""",
         "Rscript program",
         "Rscript -e 'library(ncdf4)'",
     ),
     "node": (
-        'const fs = require("fs"), law = require("./read_law.js");\n'
-        'const contact = law(JSON.parse(fs.readFileSync("law.json")));\n'
-        'for (const line of fs.readFileSync("states.csv", "utf8").trim().split("\\n"))\n'
-        '  console.log(Object.values(contact(...line.split(",").map(Number))).join(","));\n',
+        """\
+const fs = require("fs"), law = require("./read_law.js");
+const contact = law(JSON.parse(fs.readFileSync("law.json")));
+for (const line of fs.readFileSync("states.csv", "utf8").trim().split("\\n"))
+  console.log(Object.values(contact(...line.split(",").map(Number))).join(","));
+""",
         "mv program program.js && node program.js",
         "command -v node",
     ),
     "fortran": (
-        "program states\n  use read_law_file\n  implicit none\n  type(law) :: a\n  real(8) :: "
-        "x(4)\n  integer :: end\n"
-        "  a = read_law('law.nc')\n  open (1, file='states.csv')\n"
-        "  do\n    read (1, *, iostat=end) x\n    if (end /= 0) exit\n"
-        "    print '(8(es25.17e3, \",\"), es25.17e3)', contact(a, x(1), x(2), x(3), x(4))\n  end "
-        "do\nend program\n",
+        """\
+program states
+  use read_law_file
+  implicit none
+  type(law) :: a
+  real(8) :: x(4)
+  integer :: end
+  a = read_law('law.nc')
+  open (1, file='states.csv')
+  do
+    read (1, *, iostat=end) x
+    if (end /= 0) exit
+    print '(8(es25.17e3, ","), es25.17e3)', contact(a, x(1), x(2), x(3), x(4))
+  end do
+end program
+""",
         "mv program program.f90 && gfortran -O2 -Wall read_law.f90 program.f90 -o program "
         "$(nf-config --fflags --flibs)"
         " && ./program",
@@ -297,17 +312,23 @@ def roller(tmp_path_factory):
     tables.export(tables.law(11.0), place / "paper.h")
     shutil.copy(HEADERS / "vr_roll.h", place)
     (place / "roll.c").write_text(
-        '#include <stdio.h>\n#include <stdlib.h>\n#include "paper.h"\n#include "vr_roll.h"\n'
-        "int main(int count, char **text) {\n"
-        "  double a[9];\n  long n, calls;\n  int worst = 0;\n"
-        "  for (n = 1; n < count && n < 10; n++) a[n - 1] = atof(text[n]);\n"
-        "  vr_roller r = {&paper, 10.0, 0.3, a[0], 0.5, a[1], a[2], a[3], a[4], a[5], 0.0, 0.0, 0, "
-        "0};\n"
-        "  calls = (long)a[7];\n"
-        "  for (n = 0; n < calls; n++) { int e = vr_roll(&r, a[6] / calls, a[8]); if (e > worst) "
-        "worst = e; }\n"
-        '  printf("%d %.17g %.17g %.17g\\n", worst, r.V, r.V + r.slip, r.x);\n'
-        "  return 0;\n}\n"
+        """\
+#include <stdio.h>
+#include <stdlib.h>
+#include "paper.h"
+#include "vr_roll.h"
+int main(int count, char **text) {
+  double a[9];
+  long n, calls;
+  int worst = 0;
+  for (n = 1; n < count && n < 10; n++) a[n - 1] = atof(text[n]);
+  vr_roller r = {&paper, 10.0, 0.3, a[0], 0.5, a[1], a[2], a[3], a[4], a[5], 0.0, 0.0, 0, 0};
+  calls = (long)a[7];
+  for (n = 0; n < calls; n++) { int e = vr_roll(&r, a[6] / calls, a[8]); if (e > worst) worst = e; }
+  printf("%d %.17g %.17g %.17g\\n", worst, r.V, r.V + r.slip, r.x);
+  return 0;
+}
+"""
     )
     output(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", place)
     return place / "roll"

@@ -36,7 +36,7 @@ KNOWN = TRUTH | {"brake": BRAKE, "drag": DRAG, "t0:run": 0.15}
 
 def drum(load):
     """A roller on a drum, whose bearing takes a part too."""
-    M = roller().replace(load=load).contact(V, delta=0.0, fields="M").M
+    M = roller().replace(load=load).contact(V, delta=0.0).M
     return vr.Resistance(V, M + BRAKE + DRAG * V / 0.1, sigma=0.01, load=load, name=f"{load} N/m")
 
 
@@ -51,7 +51,7 @@ def late():
 
 def warm():
     """At 60 degrees the relaxation times are others."""
-    M = roller(T_ref=TRUTH["T_ref"] * SHIFT(60.0)).contact(V, delta=0.0, fields="M").M
+    M = roller(T_ref=TRUTH["T_ref"] * SHIFT(60.0)).contact(V, delta=0.0).M
     return vr.Resistance(V, M, sigma=0.01, temperature=60.0, name="warm")
 
 
@@ -158,7 +158,7 @@ def test_a_product_that_a_range_limits_is_told():
 
 def test_a_wrong_model_is_told_before_any_interval():
     """M of two modes, by one."""
-    M = two_modes().contact(V, delta=0.0, fields="M").M
+    M = two_modes().contact(V, delta=0.0).M
     fit = fit_of("E T_ref", vr.Resistance(V, M, sigma=0.01))
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
@@ -183,7 +183,7 @@ def test_sigma_that_is_not_given_is_estimated():
 
 def fit_with_outliers(seed, body, size, robust=True):
     """5 % of outliers in M of a body."""
-    bad = noise(seed, body.contact(V, delta=0.0, fields="M").M, size)
+    bad = noise(seed, body.contact(V, delta=0.0).M, size)
     bad[[7, 27]] += 0.2, -0.2
     return fit_of("E E_1 T_ref", vr.Resistance(V, bad, sigma=0.01), robust=robust)
 
@@ -237,7 +237,7 @@ def test_a_prediction_has_bands():
         [0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"}
     )
     band = fit.predict(vr.Resistance(speeds)).M
-    fast = fit.cylinder.contact(1.0, delta=0.0, fields="M").M
+    fast = fit.cylinder.contact(1.0, delta=0.0).M
     assert close(float(band.value.sel(speed="fast")), float(fast), tol.STEADY)
     t = np.linspace(0.0, 30.0, 7)
     by_slopes, drawn = (fit.predict(vr.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))

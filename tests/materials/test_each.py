@@ -33,9 +33,9 @@ def test_an_ensemble_is_its_motions(name):
     mu = draw.uniform(0.1, 0.3, len(many))
     fields = ("V", "omega", "x", "angle", "delta", "slip_loss", "rolling_loss")
     asked = {"rtol": 1e-6, "rest": 1e-3, "fields": fields, "method": "integrate"}
-    found = vr.ensemble(scene_of(many, mu=mu), *start, T, **asked, threads=1)
+    found = scene_of(many, mu=mu).ensemble(*start, T, **asked, threads=1)
     for i in range(len(many)):
-        motion = vr.roll(scene_of(many[i], mu=mu[i]), *start[:, i], T, rtol=1e-6, rest=1e-3)
+        motion = scene_of(many[i], mu=mu[i]).roll(*start[:, i], T, rtol=1e-6, rest=1e-3)
         for field in fields:
             exact = motion[field]
             scale = max(np.nanmax(np.abs(exact)), float(field.endswith("loss")))
@@ -43,7 +43,7 @@ def test_an_ensemble_is_its_motions(name):
         times = motion.onset_time, motion.rest_time
         assert close((found.onset_time[i], found.rest_time[i]), times, tol.MOTION_EACH)
     some = slice(1, len(many) - 1)
-    again = vr.ensemble(scene_of(many[some], mu=mu[some]), *start[:, some], T, **asked, threads=3)
+    again = scene_of(many[some], mu=mu[some]).ensemble(*start[:, some], T, **asked, threads=3)
     for field in (*fields, "onset_time", "rest_time", "status", "steps"):
         assert np.array_equal(found[field][some], again[field], equal_nan=True), field
     kept = 0.5 * (found.V**2 + 0.5 * found.omega**2) + found.slip_loss + found.rolling_loss
@@ -54,9 +54,9 @@ def test_an_ensemble_is_its_motions(name):
 def test_stress(name):
     many = MATERIALS[name]()
     x = np.linspace(-0.6, 0.9, 7)[:, None]
-    found = vr.stress(scene_of(many), x, 0.3, delta=1e-3)
+    found = scene_of(many).stress(x, 0.3, delta=1e-3)
     for i, one in enumerate(many):
-        alone = vr.stress(scene_of(one), x[:, 0], 0.3, delta=1e-3)
+        alone = scene_of(one).stress(x[:, 0], 0.3, delta=1e-3)
         for field in ("p", "tau"):
             assert close(
                 found[field][:, i],
@@ -76,7 +76,7 @@ def test_memory_is_bounded_by_a_block():
             vr.Bodies(rubbers(draw, 3, count=count), rubbers(draw, 3, count=count), 0.4)
         )
         return memory.taken_beside(
-            lambda: vr.ensemble(scene, 1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1)
+            lambda: scene.ensemble(1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1)
         )
 
     beside(64)

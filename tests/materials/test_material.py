@@ -1,5 +1,5 @@
-"""Material: SI moduli, shifts with temperature, conventions of other programs; more numbers by
-hand: test_values_of_materials.py.
+"""Material: SI moduli, conventions of other programs; shifts and more numbers by hand:
+test_values_of_materials.py; shifts from any temperature: test_heat.py.
 """
 
 import dataclasses
@@ -44,23 +44,6 @@ def test_creep_is_the_inverse_of_relaxation():
     product = 1j * OMEGA[:, None] * RUBBER.T_ref * RUBBER.prony.T
     compliance = 1.0 / RUBBER.prony.alpha + (RUBBER.prony.J / (1.0 + product)).sum(axis=1)
     assert close(RUBBER.E / compliance, modulus(RUBBER, OMEGA), tol.MATERIAL_FORMS)
-
-
-# --- temperature ---
-
-
-@pytest.mark.parametrize("reference", [-40.0, 20.0, 35.0])
-def test_a_shift_whose_constants_are_of_another_temperature(reference):
-    """WLF moved to another reference is the same law: C2' = C2 + T0' - T0, C1' C2' = C1 C2."""
-    usual = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
-    C2 = 101.6 + reference - 20.0
-    moved = vr.WLF(C1=8.86 * 101.6 / C2, C2=C2, T0=reference)
-    rubber = dataclasses.replace(RUBBER, temperature=20.0)
-    warm = rubber.at(60.0, shift=moved)
-    assert close(warm.T_ref, rubber.T_ref * usual(60.0), tol.MATERIAL_PRINTED)
-    back = warm.at(20.0, shift=usual)
-    assert close(back.T_ref, rubber.T_ref, tol.MATERIAL_PRINTED)
-    assert back.temperature == 20.0
 
 
 # --- other programs ---

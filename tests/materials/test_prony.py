@@ -16,7 +16,7 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
 )  # the paper's own scene is beyond the model
 
-WIDE = vr.Prony(E=[0.5, 3.0, 8.0, 20.0], tau=[1.0, 3e-2, 4e-5, 1e-9])
+WIDE = vr.Prony([0.5, 3.0, 8.0, 20.0], [1.0, 3e-2, 4e-5, 1e-9])
 #: random series: modes, decades that their times span, size of the strengths
 SERIES = st.tuples(
     st.integers(1, 12), st.floats(0.01, 14.0), st.floats(-3.0, 3.0), st.integers(0, 2**32 - 1)
@@ -59,8 +59,8 @@ def test_the_unit_of_time_is_free(unit):
     """T_ref times 1/unit: V in R/T_ref changes, nothing physical does."""
     far = WIDE.slower(unit)
     V = np.geomspace(1e-3, 1e9, 40)
-    here = vr.contact(scene(WIDE), V, delta=1e-3, slopes=True)
-    there = vr.contact(scene(far), V / unit, delta=1e-3, slopes=True)
+    here = scene(WIDE).contact(V, delta=1e-3, slopes=True)
+    there = scene(far).contact(V / unit, delta=1e-3, slopes=True)
     for name in ("lam", "epsilon", "delta_star", "beta", "Q", "M"):
         assert close(there[name], here[name], tol.UNIT)
     for name in ("zeta", "dQ_domega"):
@@ -80,21 +80,21 @@ def test_slopes_of_the_parts_of_M():
     of M for like bodies.
     """
     V = np.geomspace(1e-5, 1e7, 40)
-    slopes = vr.contact(scene(UNLIKE), V, delta=0.0, slopes=True)
+    slopes = scene(UNLIKE).contact(V, delta=0.0, slopes=True)
     step = 1e-4 * V
     above, below = (
-        vr.contact(scene(UNLIKE), at, delta=0.0, fields=PARTS) for at in (V + step, V - step)
+        scene(UNLIKE).contact(at, delta=0.0, fields=PARTS) for at in (V + step, V - step)
     )
     for name in PARTS:
         size = abs(slopes[name]) / V
         difference = (above[name] - below[name]) / (2.0 * step)
         assert close(slopes[f"d{name}_dV"], difference, tol.BODIES_DIFFERENCE, scale=size)
-    rest = vr.contact(scene(UNLIKE), 0.0, delta=0.0, slopes=True)
+    rest = scene(UNLIKE).contact(0.0, delta=0.0, slopes=True)
     half_space = 0.7 * UNLIKE.base.T_mean
     cylinder = 0.3 * UNLIKE.cylinder.T_mean
     assert close((rest.dM_half_space_dV, rest.dM_cylinder_dV), (half_space, cylinder), tol.BODIES)
     fields = ("dM_dV", "dM_cylinder_dV", "M", *PARTS)
-    like = vr.contact(scene(vr.Bodies(WIDE, WIDE)), 0.3, delta=0.0, fields=fields)
+    like = scene(vr.Bodies(WIDE, WIDE)).contact(0.3, delta=0.0, fields=fields)
     assert like.dM_cylinder_dV == 0.5 * like.dM_dV
     assert like.M_cylinder == like.M_half_space == 0.5 * like.M
 
@@ -104,7 +104,7 @@ def test_the_fastest_rolling(law):
     """Where z^2 underflows: epsilon, M and its parts go on as the logarithm says."""
     V = np.array([1e130, 1e150, 1e200, 1e290])
     series = law.total if isinstance(law, vr.Bodies) else law
-    state = vr.contact(scene(law), V, delta=0.0)
+    state = scene(law).contact(V, delta=0.0)
     z = np.sqrt(1.0 / series.alpha) / (20.0 * V)
     strengths = series.J / series.T
     terms = strengths.sum() * (-np.log(z) - np.euler_gamma) + strengths @ np.log(2.0 * series.T)
@@ -122,10 +122,8 @@ def test_slip_is_lost_and_regained_in_two_bands():
     """M(V) has two humps (E = 2, 6, tau = 1, 1e-5): stick goes twice, where the condition of each
     says.
     """
-    two = vr.Scene(
-        material=vr.Prony([2.0, 6.0], [1.0, 1e-5]), kappa=10.0, mu=1.39e-3, gamma=1.0, j=0.5
-    )
-    motion = vr.roll(two, 5000.0, 5000.0, np.geomspace(1.0, 1e9, 50))
+    two = vr.Scene(material=vr.Prony([2.0, 6.0], [1.0, 1e-5]), kappa=10.0, mu=1.39e-3, gamma=1.0)
+    motion = two.roll(5000.0, 5000.0, np.geomspace(1.0, 1e9, 50))
     assert [switch.regime for switch in motion.switches[:3]] == [
         "full slip",
         "partial slip",

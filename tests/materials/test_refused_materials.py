@@ -45,19 +45,20 @@ def wide():
     return vr.tables.build(PAPER, [0.1, 2.0], delta=[0.0, 0.01], alpha=[1.0, 16.0])
 
 
+def of_column(content):
+    return read_column(file(content, "starts.csv"), "V0", "1")
+
+
 DECADES = np.logspace(-1, 1, 11)
 STEP = np.logspace(-3, 3, 20)
 REFUSED = [
     *each(
         None,
         {
-            "other = <2 series | of one material": lambda: vr.Cover(
-                11.0, nu=0.5, thickness=1.0, other=MANY
-            ),
             "shapes factor (3,), materials (2,)": lambda: MANY.slower([1.0, 2.0, 3.0]),
-            "name = 3": lambda: vr.Material(E=1e6, nu=0.4, name=3),
+            "name = 3": lambda: vr.Material(1e6, 0.4, name=3),
             "source = 3": lambda: vr.Measured(1.0, 2.0, 0.1, 3),
-            "T_ref = [1.0, 2.0]": lambda: vr.Material(E=1e6, nu=0.4, T_ref=[1.0, 2.0]),
+            "T_ref = [1.0, 2.0]": lambda: vr.Material(1e6, 0.4, T_ref=[1.0, 2.0]),
             "material = rigid": lambda: vr.Material.rigid().plot(),
             "G has shape (0,) and tau has shape (1,): must be lists of the same length": lambda: (
                 vr.Material.comsol(1e6, 0.4, [], [1.0])
@@ -88,23 +89,17 @@ REFUSED = [
         },
     ),
     *each(
-        None,
+        of_column,
         {
-            "line 4 ('x') is not a row of numbers": lambda: read_column(
-                file("V0;mu\n1;0.1\n2;0.2\nx", "starts.csv"), "V0", "1"
-            ),
-            "line 4 ('3') has 1 cells": lambda: read_column(
-                file("V0;mu\n1;0.1\n2;0.2\n3", "starts.csv"), "V0", "1"
-            ),
+            "line 4 ('x') is not a row of numbers": "V0;mu\n1;0.1\n2;0.2\nx",
+            "line 4 ('3') has 1 cells": "V0;mu\n1;0.1\n2;0.2\n3",
         },
         vr.FileError,
     ),
     *each(
         None,
         {
-            "dimension of 1": lambda: read_column(
-                file("V0 [km/h];mu\n0,36;0,1", "starts.csv"), "V0", "1"
-            ),
+            "dimension of 1": lambda: of_column("V0 [km/h];mu\n0,36;0,1"),
             "T_ref is in 1/Hz: must be in s": lambda: vr.Material(
                 1e6, 0.5, T_ref=xr.DataArray(1.0, attrs={"units": "1/Hz"})
             ),
@@ -144,14 +139,8 @@ REFUSED = [
                 [[0.5], [0.6]], [1.0], alpha=[1.0, 2.0, 3.0]
             ),
             "alpha | 2.0": lambda: vr.Prony.creep([0.5], [1.0], alpha=3.0),
-            "series | a Prony series of one material": lambda: vr.Cover(
-                MANY, nu=0.5, thickness=1.0
-            ),
-            "nu has shape (2,) | a number, or a list, one for each thickness": lambda: vr.Cover(
-                SERIES, nu=[0.3, 0.4], thickness=1.0
-            ),
-            "thickness has shape (2, 1): must be a number, or a list, one for each cover": lambda: (
-                vr.Cover(SERIES, nu=0.5, thickness=[[1.0], [2.0]])
+            "sum of J = 2e+300: must be below 1": lambda: vr.Prony.creep(
+                [1.7e308, 1.7e308], [1.0, 0.1]
             ),
             "a name in C (letters, digits, _; no digit first) with .h, as rubber.h": lambda: (
                 vr.tables.export(vr.tables.law(11.0), "my-rubber.h")
@@ -160,26 +149,10 @@ REFUSED = [
             "2.0, 1.0 at rows 1, 2": lambda: vr.Coastdown(
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
-            "(39,) | (40,)": lambda: vr.Resistance(HUMP, HUMP[:-1], sigma=0.1),
             "V0 of the record is not given": (
                 lambda: vr.identify(roller(), ranges("E"), resistance(), starts=1).predict(
                     vr.Coastdown(TIMES, TIMES)
                 )
-            ),
-            "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
-            "since it resists; reverse its sign": lambda: vr.Resistance(
-                HUMP, -resistance().M, sigma=0.01
-            ),
-            "left out | given.nc is the law of one material": lambda: vr.load_law(
-                netcdf(law_file()), 11.0
-            ),
-            "alpha = None: must be a number in [1, 2], as in | --alpha LOW:HIGH": lambda: (
-                vr.load_law(netcdf(vr.tables.law(alpha=(1, 2))))
-            ),
-            "alpha | must be": lambda: vr.load_law(netcdf(grid())),
-            "alpha = nan: must be": lambda: vr.load_law(netcdf(grid()), alpha=nan),
-            "alpha = 11.0: must be left out | has no axis alpha": lambda: vr.load_law(
-                netcdf(OTHER_GRID), alpha=11.0
             ),
             "C2 is in degC: must be in K": lambda: vr.WLF(
                 T0=20.0, C2=xr.DataArray(50.0, attrs={"units": "degC"})
@@ -197,8 +170,6 @@ REFUSED = [
                 T0=20.0
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
-            "resistance: V is empty: must be at least one number": lambda: vr.Resistance([], []),
-            "F is empty: must be at least one number": lambda: vr.Resistance([1.0], F=[]),
             "cylinder has other materials: must be a Cylinder with material=": [
                 lambda: vr.fit_prony(*DMA).validity(ROLLER, 1.0),
                 lambda: vr.fit_prony(*DMA).validity(None, 1.0),
@@ -312,12 +283,6 @@ REFUSED = [
         },
     ),
     *each(
-        vr.Prony.creep,
-        {
-            "sum of J = 2e+300: must be below 1": ([1.7e308, 1.7e308], [1.0, 0.1]),
-        },
-    ),
-    *each(
         vr.tables.law,
         {
             "material = True (a truth value)": True,
@@ -371,12 +336,48 @@ REFUSED = [
         {"relaxation or mode is given: must be left out": [STEP, {"mode": "tension"}]},
     ),
     *each(
+        vr.Cover,
+        {
+            "other = <2 series | of one material": {"other": MANY},
+            "series | a Prony series of one material": {"series": MANY},
+            "nu has shape (2,) | a number, or a list, one for each thickness": {"nu": [0.3, 0.4]},
+            "thickness has shape (2, 1): must be a number, or a list, one for each cover": {
+                "thickness": [[1.0], [2.0]]
+            },
+        },
+        series=SERIES,
+        nu=0.5,
+        thickness=1.0,
+    ),
+    *each(
+        vr.Resistance,
+        {
+            "(39,) | (40,)": (HUMP, HUMP[:-1]),
+            "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
+            "since it resists; reverse its sign": (HUMP, -HUMP),
+            "resistance: V is empty: must be at least one number": ([], []),
+            "F is empty: must be at least one number": {"V": [1.0], "F": []},
+        },
+        sigma=0.1,
+    ),
+    *each(
+        lambda made, alpha=None: vr.load_law(netcdf(made()), alpha),
+        {
+            "left out | given.nc is the law of one material": (law_file, 11.0),
+            "alpha = None: must be a number in [1, 2], as in | --alpha LOW:HIGH": partial(
+                vr.tables.law, alpha=(1, 2)
+            ),
+            "alpha | must be": grid,
+            "alpha = nan: must be": (grid, nan),
+            "alpha = 11.0: must be left out | has no axis alpha": (OTHER_GRID.copy, 11.0),
+        },
+    ),
+    *each(
         vr.Bodies,
         {
             "shapes | cylinder (2,), base (3,)": (MANY, vr.Prony([[1.0]] * 3, [1.0])),
             "the pair has 80 terms in both series: must be one of at most 64": (
-                vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0)),
-                vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0)),
+                *[vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0))] * 2,
                 0.1,
             ),
             "base = 11.0 | a Prony series": (MANY, 11.0),

@@ -5,13 +5,17 @@ import pytest
 import tolerances as tol
 from calls import file, rows
 from closeness import close
-from refusals import refused
+from refusals import each, refused
 
 import viscoroll as vr
 
 pytestmark = pytest.mark.usefixtures("here")
 T = np.geomspace(0.01, 100.0, 9)
 E = 1e6 * (2.0 + np.exp(-T / 0.5))
+
+
+def relaxation_of(text):
+    return vr.read_relaxation(file(text, "step.csv"))
 
 
 FILES = {
@@ -31,7 +35,7 @@ FILES = {
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("text", FILES)
 def test_relaxation_is_read(text):
-    record = vr.read_relaxation(file(text, "step.csv"))
+    record = relaxation_of(text)
     assert close(record.t, T, tol.DMA_DIGITS)
     assert close(record.relaxation, E, tol.DMA_DIGITS)
     assert record.mode == FILES[text]
@@ -42,43 +46,36 @@ def test_relaxation_is_read(text):
     assert close(fit.E, 2e6, tol.DMA_DIGITS)
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (
-            "Time [s];Force [N]\n1;2\n2;1\n",
-            ["no column was found for the relaxation modulus", "'Force [N]'"],
+REFUSED = each(
+    relaxation_of,
+    {
+        "no column was found for the relaxation modulus | 'Force [N]'": (
+            "Time [s];Force [N]\n1;2\n2;1\n"
         ),
-        (
-            "Time [Hz];E(t) [MPa]\n1;2\n2;1\n",
-            ["unit 'Hz' is not a unit of time: give the unit of its numbers, as units={'time'"],
+        "unit 'Hz' is not a unit of time: give the unit of its numbers, as units={'time'": (
+            "Time [Hz];E(t) [MPa]\n1;2\n2;1\n"
         ),
-        (
-            "Time [s];E(t) [MPa]\n0;2\n2;1\n",
-            ["line 2 (0; 2): the time must be > 0 and finite: correct or remove the row"],
+        "line 2 (0; 2): the time must be > 0 and finite: correct or remove the row": (
+            "Time [s];E(t) [MPa]\n0;2\n2;1\n"
         ),
-        (
-            "Time [s];Stress [MPa];Strain\n1;2;5\n2;1;5\n",
-            ["'Strain' has no unit", "units={'strain': '%'}"],
+        "'Strain' has no unit | units={'strain': '%'}": (
+            "Time [s];Stress [MPa];Strain\n1;2;5\n2;1;5\n"
         ),
-        (
-            "Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n",
-            ["at 20 to 40 °C, and must be at one temperature: keep"],
+        "at 20 to 40 °C, and must be at one temperature: keep": (
+            "Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n"
         ),
-        (
-            "Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n",
-            ["line 4 (1; 1): an earlier row has the same time and another"],
+        "line 4 (1; 1): an earlier row has the same time and another": (
+            "Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n"
         ),
-        (
-            "theta_C;t [s];E(t) [Pa]\n20;1;2\n20;2;1\n60;1;2\n60;2;1\n",
-            ["looks like temperatures", "columns={'temperature'"],
+        "looks like temperatures | columns={'temperature'": (
+            "theta_C;t [s];E(t) [Pa]\n20;1;2\n20;2;1\n60;1;2\n60;2;1\n"
         ),
-        (
-            "Time [s];E(t) [MPa]\n1;2\nTime [s];E(t) [MPa]\n1;2\n",
-            ["has 2 tables: keep one of them"],
-        ),
-    ],
+        "has 2 tables: keep one of them": "Time [s];E(t) [MPa]\n1;2\nTime [s];E(t) [MPa]\n1;2\n",
+    },
+    vr.FileError,
 )
-def test_relaxation_is_refused(text, words):
-    path = file(text, "step.csv")
-    refused(lambda: vr.read_relaxation(path), *words, error=vr.FileError)
+
+
+@pytest.mark.parametrize(("call", "words", "error"), REFUSED)
+def test_relaxation_is_refused(call, words, error):
+    refused(call, *words, error=error)

@@ -51,8 +51,8 @@ def test_the_end_of_a_motion_of_bodies_that_differ():
     """V decays by a closed form, as of like bodies: steps went on to the smallest number, 430 of
     them.
     """
-    modes = vr.Prony(E=[3.0] * 10, tau=10.0 ** np.arange(-9, 1))
-    on_steel = vr.Bodies(cylinder=modes, base=vr.Prony.elastic(), share=1.0)
+    modes = vr.Prony([3.0] * 10, 10.0 ** np.arange(-9, 1))
+    on_steel = vr.Bodies(modes, vr.Prony.elastic(), 1.0)
     scene = vr.Scene(material=on_steel, kappa=2.91, mu=0.2, gamma=100.0)
     m = scene.roll(1.0, 0.0, [0.3, 0.5, 1.0, 2.0, 10.0])
     like = scene.replace(material=modes).roll(1.0, 0.0, m.t)

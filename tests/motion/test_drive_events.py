@@ -15,7 +15,7 @@ pytestmark = pytest.mark.filterwarnings(
 
 #: errors over rtol: of V and omega over the largest speed so far, and of times of events
 BOUND = 30.0
-ELASTIC = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5)
+ELASTIC = vr.Scene(1.0, 10.0, 0.2, 1.0)
 
 
 @pytest.mark.parametrize("share", [1e-6, 1e-9, 1e-12])
@@ -103,7 +103,7 @@ def test_a_brake_gives_way_to_a_ramp(most):
     """What is left of the torque rises from 0: the motion is that of a ramp from 0 without a
     brake.
     """
-    scene = vr.Scene(alpha=1.0, kappa=15.0, mu=0.05, gamma=12.0, j=0.66)
+    scene = vr.Scene(1.0, 15.0, 0.05, 12.0, 0.66)
     ramp = vr.Schedule([0.0, 1.0], [0.0, -0.3])
     since = np.linspace(0.0, 0.6, 13)
     t = most / 0.3 + since
@@ -136,7 +136,7 @@ def test_a_prescribed_speed_that_comes_to_0(values, turns, rtol):
     """What its integration leaves of it is 0: the other speed comes to rest too; V turns where it
     leaves 0 the other way, not where it comes to 0 with a piece of the drive.
     """
-    scene = vr.Scene(11.0, 10.0, 0.05, 1.0, 0.5)
+    scene = vr.Scene(11.0, 10.0, 0.05, 1.0)
     V = vr.Schedule(np.arange(len(values)), values)
     t = np.linspace(0.0, V.times[-1], 17)
     m = scene.roll(None, -2.0, t, rtol=rtol, V=V, torque=-0.051)

@@ -34,8 +34,8 @@ def test_a_motion_carries_its_drive():
         assert np.array_equal(same[name], m[name])
     assert data.attrs["drive_force"] == "a function of t"
     assert data.attrs["drive_error"] == m.drive_error > 0.0
-    assert data["drive_torque"].values.tolist() == RAMP.values.tolist()
-    assert data["drive_torque_time"].values.tolist() == RAMP.times.tolist()
+    ramp = data.drive_torque, data.drive_torque_time
+    assert np.array_equal(ramp, [RAMP.values, RAMP.times])
     assert data["drive_torque"].attrs["gain_omega"] == -0.1
     assert data["drive_slope"].item() == -0.5
     assert data.attrs["kappa"] == m.scene.kappa > ROLLER.kappa

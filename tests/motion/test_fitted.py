@@ -69,11 +69,11 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     words = "torque is a function that piecewise polynomials cannot approximate near t = "
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
-        refused(partial(vr.roll, ROLLER, 0.5, 0.5, END, torque=function), words, "Schedule")
+        refused(partial(ROLLER.roll, 0.5, 0.5, END, torque=function), words, "Schedule")
         assert function.calls <= 2 * drive_pieces.MOST
 
 
-@pytest.mark.parametrize("roll", [vr.roll, vr.ensemble])
+@pytest.mark.parametrize("roll", [ROLLER.roll, ROLLER.ensemble])
 def test_a_narrow_pulse_is_seen_where_it_is_resolved(roll):
     """A pulse of END/8000, between two of the thousand samples that are taken without
     ``resolve``.
@@ -85,9 +85,9 @@ def test_a_narrow_pulse_is_seen_where_it_is_resolved(roll):
         return 20.0 * (at < t < at + width)
 
     corners = vr.Schedule([at, at, at + width, at + width], [0.0, 20.0, 20.0, 0.0])
-    exact, free = (roll(ROLLER, 0.1, 0.1, [END], torque=torque).V for torque in (corners, None))
-    missed = roll(ROLLER, 0.1, 0.1, [END], torque=pulse).V
-    seen = roll(ROLLER, 0.1, 0.1, [END], torque=pulse, resolve=0.5 * width).V
+    exact, free = (roll(0.1, 0.1, [END], torque=torque).V for torque in (corners, None))
+    missed = roll(0.1, 0.1, [END], torque=pulse).V
+    seen = roll(0.1, 0.1, [END], torque=pulse, resolve=0.5 * width).V
     assert np.array_equal(missed, free)
     assert close(seen, exact, tol.CALLABLE_PULSE)
     assert abs(exact - free).min() > tol.CALLABLE_PULSE_ACTS * abs(exact).max()

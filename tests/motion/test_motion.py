@@ -85,7 +85,7 @@ def test_outputs_end_where_V_passes_zero(alpha, method):
     """V = V0 - mu t, omega = omega0 + mu t/j in full slip of an elastic cylinder, and their
     integrals; it sticks much later.
     """
-    scene = vr.Scene(alpha=alpha, kappa=1.0, mu=1.0, gamma=1.0, j=2.0)
+    scene = vr.Scene(alpha, 1.0, 1.0, 1.0, 2.0)
     for shift in (-1e-15, -(2.0**-53), 0.0, 2.0**-52, 1e-15, 1e-12):
         t = 1.0 + shift
         m = scene.ensemble(

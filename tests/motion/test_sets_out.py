@@ -61,7 +61,7 @@ def test_to_and_fro_where_friction_is_strong():
     """Jumps of force and torque take V to 0 while d relaxes from nowhere: a tenth ended in steps
     too small.
     """
-    scene = vr.Scene(alpha=11.0, kappa=0.1, mu=0.9, gamma=1.0, j=0.8)
+    scene = vr.Scene(11.0, 0.1, 0.9, 1.0, 0.8)
     draw = np.random.default_rng(5)
     times = np.repeat(np.arange(21.0), 2)[1:-1]
     t = np.linspace(0.0, 20.0, 61)
@@ -91,9 +91,9 @@ def test_two_ways_on_are_none(name):
     ratio, force, slope = TWO_WAYS[name]
     drive = {"force": force, "omega": vr.Schedule([0.0, 1.0], [0.0, slope])}
     with pytest.warns(RuntimeWarning, match="two directions"):
-        m = vr.Scene(11.0, 0.5 / ratio, 1.0, 1.0, 0.5).roll(0.0, None, [0.0, 1.0], **drive)
+        m = vr.Scene(11.0, 0.5 / ratio, 1.0, 1.0).roll(0.0, None, [0.0, 1.0], **drive)
     assert m.status == vr.MotionStatus.UNDECIDED
     assert m.V[0] == 0.0
     assert np.isnan(m.V[1])
-    weaker = vr.Scene(11.0, 0.5, 1.0, 1.0, 0.5).roll(0.0, None, [0.0, 1.0], **drive)
+    weaker = vr.Scene(11.0, 0.5, 1.0, 1.0).roll(0.0, None, [0.0, 1.0], **drive)
     assert weaker.success

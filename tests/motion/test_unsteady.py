@@ -12,7 +12,7 @@ import viscoroll as vr
 from pipeline.evidence.prove.motion import balance
 
 #: nowhere more unsteady than 0.22: it may pass V = 0
-GENTLE = vr.Scene(alpha=3.0, kappa=5.0, mu=0.5, gamma=1.5, j=0.8)
+GENTLE = vr.Scene(3.0, 5.0, 0.5, 1.5, 0.8)
 T = np.linspace(0.0, 8.0, 17)
 TOO_SLOW = "became too slow for unsteady=True"
 
@@ -75,7 +75,7 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
 
 def test_the_last_state_is_told_where_the_last_step_cannot_be_repeated():
     """Cut at its end, the last step of this start from a standstill is given up earlier."""
-    material = vr.Material(E=3e6, nu=0.49, prony=DMA, T_ref=3.0)
+    material = vr.Material(3e6, 0.49, DMA, 3.0)
     roller = vr.Cylinder(R=0.05, m=9.0, material=material, mu=0.6)
     with pytest.warns(RuntimeWarning, match=TOO_SLOW):
         m = roller.roll(0.05, 1.0, np.linspace(0.0, 20.0, 201), unsteady=True, rested=True)
@@ -117,7 +117,7 @@ def test_a_rest_costs_speed():
 @pytest.mark.parametrize("t_w", [0.5, 3.0])
 def test_a_short_rest_costs_less(t_w):
     """W of docs/validity.md after a time t_w, of one mode, whose way is short of nothing."""
-    scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.2, gamma=1.0)
+    scene = vr.Scene(11.0, 10.0, 0.2, 1.0)
     V0 = 0.5
     J = 10.0 / 11.0
     L = 2.0 * 10.0 * V0
@@ -134,7 +134,7 @@ def test_caught_in_the_imprint():
     with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of its standstill"):
         m = ROLLER.roll(1.3, 1.3, T[:3], rested=True, unsteady=True)
     V0 = np.array([1.3, 30.0, -1.3])
-    e = ROLLER.ensemble(V0, V0, T[:3], rested=True, unsteady=True, method="auto")
+    e = ROLLER.ensemble(V0, V0, T[:3], rested=True, unsteady=True)
     by_flow = ROLLER.ensemble(V0, V0, T[:3], rested=True, method="flow")
     caught = [vr.MotionStatus.CAUGHT, vr.MotionStatus.DONE, vr.MotionStatus.CAUGHT]
     assert e.status.tolist() == by_flow.status.tolist() == caught

@@ -109,6 +109,11 @@ def test_damage_is_found_and_put_right(run, tmp_path, whole, change):
         assert content(store) == exact, name
 
 
+def written(paths):
+    """When each of these files was."""
+    return {path: path.stat().st_mtime_ns for path in paths}
+
+
 @contextmanager
 def disk_for(writes, monkeypatch):
     """A disk with space for so many writes of files; the block must end with an error that says
@@ -170,10 +175,10 @@ def smaller(tmp_path):
 
 def test_a_run_grows(smaller, run, whole):
     """Its whole blocks stay as they are, and all files become those of the larger run."""
-    kept = {path: path.stat().st_mtime_ns for path in smaller.glob("records/00000000[012]")}
+    kept = written(smaller.glob("records/00000000[012]"))
     assert len(kept) == 3
     assert run_ensemble(run, smaller, threads=2) == 9
-    assert {path: path.stat().st_mtime_ns for path in kept} == kept
+    assert written(kept) == kept
     assert content(smaller) == content(whole)
     assert verify(smaller).ok
     assert len(open_run(smaller)) == 1200
@@ -226,9 +231,9 @@ def test_a_run_that_cannot_grow_is_refused(tmp_path, before, now, words):
 def begun(text, folder, **options):
     """The program in a process of its own, at work on a run, and its store."""
     (folder / "run.toml").write_text(text)
-    command = ["viscoroll", "ensemble", "run.toml", "-o", "store.zarr", "--threads", "2"]
+    command = "-m viscoroll ensemble run.toml -o store.zarr --threads 2"
     process = subprocess.Popen(
-        [sys.executable, "-m", *command],
+        [sys.executable, *command.split()],
         cwd=folder,
         stdout=subprocess.DEVNULL,
         text=True,
@@ -246,10 +251,10 @@ def test_a_killed_run_goes_on(run, tmp_path, whole):
         time.sleep(0.001)
     os.killpg(process.pid, signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
-    done = {path: path.stat().st_mtime_ns for path in store.glob("records/0*")}
+    done = written(store.glob("records/0*"))
     assert 3 <= len(done) < 12
     assert run_ensemble(run, store) == 12 - len(done)
-    assert {path: path.stat().st_mtime_ns for path in done} == done
+    assert written(done) == done
     assert content(store) == content(whole)
 
 

@@ -132,7 +132,7 @@ def test_what_some_motions_lack_is_refused_and_said():
     assert constant.startswith("V at t = 0 (varies by no more than the error of integration, ")
     count = re.fullmatch(r"onset_time \((\d+) of 256 motions have no value\)", lacking)
     starts = np.linspace(0.0, 0.9, 500)
-    late = np.isnan(vr.ensemble(vr.presets.PAPER_SECTION_5, 1.0, starts, 1.2e-4).onset_time).mean()
+    late = np.isnan(vr.presets.PAPER_SECTION_5.ensemble(1.0, starts, 1.2e-4).onset_time).mean()
     assert close(int(count[1]) / 256, late, tol.SENSITIVITY_SHARE)
     assert np.isnan(indices["V_S1"][0]).all()
     assert np.isfinite(indices["V_S1"][1]).all()

@@ -47,9 +47,7 @@ def test_data_over_the_band_determine_M(growth, thickness):
     transit frequency it is wrong.
     """
     k = np.arange(-6.0, 9.0)
-    rubber = vr.Material(
-        1e6, 0.49, vr.Prony(0.05 * 10.0 ** (growth * k), 10.0 ** (-k - 1.0)), T_ref=1.0
-    )
+    rubber = vr.Material(1e6, 0.49, vr.Prony(0.05 * 10.0 ** (growth * k), 10.0 ** (-k - 1.0)))
     omega = np.geomspace(1.0, 1e3, 31)
     fit = vr.fit_prony(omega, rubber.storage(omega), rubber.loss(omega)).material(nu=0.49)
     given = {"thickness": thickness, "measured": vr.Measured(1.0, 1e3, 0.0)}

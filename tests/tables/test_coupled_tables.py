@@ -28,21 +28,25 @@ BELT = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
 BOTH_SLIP = vr.Cover(vr.Prony([1.0, 3.0], [10.0, 0.1]), nu=0.3, thickness=0.5, on="cylinder")
 
 
+def scene_of(material, mu=0.3, **more):
+    return vr.Scene(material=material, kappa=4.0, mu=mu, gamma=1.0, **more)
+
+
 @cache
 def law_of(material, mu):
     """The table that a scene has unless asked otherwise, which takes two seconds."""
-    return vr.Scene(material=material, kappa=4.0, mu=mu).rolling_law
+    return scene_of(material, mu).rolling_law
 
 
 @pytest.fixture(scope="module")
 def scene():
-    return vr.Scene(material=law_of(BELT, 0.3), kappa=4.0, mu=0.3, gamma=1.0)
+    return scene_of(law_of(BELT, 0.3))
 
 
 @pytest.mark.parametrize(("material", "mu", "count"), [(BELT, 0.3, 40), (BOTH_SLIP, 0.2, 80)])
 def test_table_holds_states_beside_its_nodes(material, mu, count):
-    scene = vr.Scene(material=material, kappa=4.0, mu=mu)
-    found = measure_errors(law_of(material, mu).coupled, CoupledPair.of_scene(scene), count, 7)
+    pair = CoupledPair.of_scene(scene_of(material, mu))
+    found = measure_errors(law_of(material, mu).coupled, pair, count, 7)
     assert found["Q_over_mu"] < tol.TABLE_Q
     assert found["M_half_space"] + found["M_cylinder"] < tol.TABLE_M
     assert found["epsilon"] < tol.TABLE_EPSILON
@@ -125,16 +129,19 @@ def test_losses_in_slip_of_free_rolling_are_not_below_zero(scene):
 
 
 def test_grids_of_other_programs_roll(tmp_path):
-    rows = vr.Scene(material=ONE, kappa=4.0, mu=0.3, gamma=1.0)
+    rows = scene_of(ONE)
     V = tables.spread(1e-4, 10.0, 200, "log")
     made = tables.build(rows, V, delta=tables.creep_nodes(rows, V, 401))
     tables.save(made, tmp_path / "grid.nc")
     grid = rows.replace(material=vr.load_law(tmp_path / "grid.nc"))
     found, exact = (each.roll(1.0, 1.0, [0.0, 5.0, 10.0], torque=-0.35) for each in (grid, rows))
     assert close((found.V, found.omega), (exact.V, exact.omega), tol.GRID_MOTION)
-    refused(lambda: grid.roll(100.0, 100.0, [0.0, 1.0]), "within the table")
-    refused(lambda: grid.ensemble([1.0, 100.0], 1.0, 5.0), "within the table")
-    refused(lambda: grid.ensemble([1.0, 9.0], 9.0, 5.0, torque=5.0), "within the table")
+    for beyond in (
+        lambda: grid.roll(100.0, 100.0, [0.0, 1.0]),
+        lambda: grid.ensemble([1.0, 100.0], 1.0, 5.0),
+        lambda: grid.ensemble([1.0, 9.0], 9.0, 5.0, torque=5.0),
+    ):
+        refused(beyond, "within the table")
     refused(lambda: grid.contact(0.1, delta=0.0, fields="lam"), "lam")
     assert "beta" not in grid.contact(0.1, delta=0.0).as_dict()
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
@@ -148,7 +155,7 @@ def test_the_slowest_free_motions_are_all_alike(coupled, omega_over_V):
     not depend on V0, whether it is found by steps (the first), by steps and the closed form of the
     decay, or by the latter alone (the last); the losses take what kinetic energy has gone.
     """
-    scene = vr.Scene(material=BELT, kappa=4.0, mu=0.3, gamma=1.0, coupled=coupled)
+    scene = scene_of(BELT, coupled=coupled)
     t = [1e-3, 1.0, 3.0]
     speeds = (1e-14, 1e-20, 1e-149, 1e-250)
     slow = [scene.roll(V0, omega_over_V * V0, t, rtol=1e-12) for V0 in speeds]
@@ -161,7 +168,7 @@ def test_the_slowest_free_motions_are_all_alike(coupled, omega_over_V):
 
 
 def test_a_cover_that_slips_in_free_rolling_stops_at_once_from_the_least_speeds():
-    scene = vr.Scene(material=law_of(BOTH_SLIP, 0.2), kappa=4.0, mu=0.2, gamma=1.0)
+    scene = scene_of(law_of(BOTH_SLIP, 0.2), 0.2)
     for V0 in (1e-20, 1e-200):
         late = scene.roll(V0, V0, [1.0])
         assert late.V[0] == late.omega[0] == 0.0
@@ -169,9 +176,8 @@ def test_a_cover_that_slips_in_free_rolling_stops_at_once_from_the_least_speeds(
 
 
 def test_unlike_half_spaces_have_a_table():
-    bodies = vr.Bodies(vr.Prony.elastic(), ONE, 0.05, (0.3, 0.3))
-    scene = vr.Scene(material=bodies, kappa=4.0, mu=0.3)
-    states = {"V": np.array([-0.1, 0.01, 0.1, 1.0]), "delta": np.array([0.02, -0.01, 0.015, 0.0])}
+    scene = scene_of(vr.Bodies(vr.Prony.elastic(), ONE, 0.05, (0.3, 0.3)))
+    states = {"V": [-0.1, 0.01, 0.1, 1.0], "delta": [0.02, -0.01, 0.015, 0.0]}
     found, truth = (scene.contact(**states, method=way) for way in ("table", "coupled"))
     assert close(found.Q, truth.Q, tol.TABLE_Q, scale=0.3)
     assert close(4.0 * found.M, 4.0 * truth.M, tol.TABLE_M, scale=1.0)
@@ -199,7 +205,7 @@ def test_one_cover_takes_its_table_unless_asked_otherwise(scene):
 
 
 def test_many_covers_in_one_call_say_what_their_tables_would_take():
-    one = vr.Scene(material=BELT, kappa=4.0, mu=0.3)
+    one = scene_of(BELT)
     covers = one.replace(material=BELT.of_thickness([0.5, 0.6, 0.7]))
     for many, words in ((covers, "needs 3 tables"), (one.replace(mu=[0.2, 0.3]), "needs 2 tables")):
         refused(partial(many.contact, 0.1, delta=0.0), words, "coupled=False")

@@ -43,7 +43,7 @@ def test_what_is_exceeded_or_no_number_is_counted():
 
 def test_sample_holds_every_corner():
     scene, V, delta = random_states(4000, 1)
-    s = np.abs(delta) / vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    s = np.abs(delta) / scene.contact(V, delta=0.0).delta_star
     assert (scene.alpha == 1.0).any()
     edges = [0.0, 5e-324, 1e-5, 1.0 - 1e-5, 1.0 - 1e-15, 1.2, np.inf]
     assert np.histogram(s, edges)[0].all()
