@@ -238,7 +238,7 @@ def test_a_prediction_has_bands():
     )
     band = fit.predict(vr.Resistance(speeds)).M
     fast = fit.cylinder.contact(1.0, delta=0.0).M
-    assert close(float(band.value.sel(speed="fast")), float(fast), tol.STEADY)
+    assert close(band.value.sel(speed="fast").item(), fast, tol.STEADY)
     t = np.linspace(0.0, 30.0, 7)
     by_slopes, drawn = (fit.predict(vr.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))
     exact = roller().roll(3.0, 30.0, t).V
@@ -338,8 +338,7 @@ def test_a_roller_on_a_cover_is_pulled_without_torque_but_that_of_its_bearing(br
     larger.
     """
     belt = vr.Material(4e6, 0.3, vr.Prony([3.0, 2.0], [1.0, 0.05]), 1e-2, thickness=0.01)
-    steel = vr.Material.rigid()
-    pulled = vr.Cylinder(R=0.1, m=35.5, material=steel, base=belt, mu=0.5, coupled=False)
+    pulled = vr.Cylinder(0.1, 35.5, material=vr.Material.rigid(), base=belt, mu=0.5, coupled=False)
     motion = pulled.roll(None, 10.0, [3.0, 4.0], V=1.0, brake=brake or None, rtol=1e-10)
     force = vr.Resistance(1.0).model(pulled, {"brake": brake})["F"]
     work = np.diff(motion.work_force) / np.diff(motion.x)
