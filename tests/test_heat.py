@@ -263,7 +263,7 @@ def test_cold_rubber_relaxes_slowly_but_has_fast_waves():
     """V a_T is far above the shear wave speed, V is not: no warning."""
     heavy = ROLLER.replace(material=dataclasses.replace(RUBBER, density=1100.0))
     with warnings.catch_warnings(action="error"):
-        heavy.temperature(0.5, ambient=-45.0, conductance=6.0)
+        heavy.temperature(0.5, **COLD)
 
 
 # --- bad input ---
