@@ -289,8 +289,8 @@ REFUSED = each(
     {
         "above ambient": lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD),
         "below R": lambda: vr.conductance(0.1, thickness=0.2),
-        "one a_T for each": lambda: vr.ShiftFactors((0.0, 20.0), (1.0,), 0.0),
-        "a_T = ": lambda: vr.ShiftFactors((0.0,), (-1.0,), 0.0),
+        "one a_T for each": lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0),
+        "a_T = ": lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0),
     },
 )
 

@@ -51,6 +51,7 @@ files = partial(each, error=vr.FileError)
 OF_LAW = '[material]\nfile = "given.nc"\n'
 SOFT_DATA = material_as_dataset(SOFT)
 REFUSED = [
+    *each(measured, {"unknown E = 3000000.0 | (low, high)": ("E = [3e5, 3e7]", "E = 3e6")}),
     *files(
         of_dma,
         {
@@ -226,7 +227,6 @@ REFUSED = [
                 'M = "moment", Q = "moment"',
             ),
             "no.csv | cannot be read": ('"drum.csv"', '"no.csv"'),
-            "unknown E = 3000000.0 | (low, high)": ("E = [3e5, 3e7]", "E = 3e6"),
             "unknown key 'more'": ("[[data]]", "[more]\n[[data]]"),
         },
     ),

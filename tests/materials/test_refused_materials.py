@@ -354,7 +354,7 @@ REFUSED = [
         {
             "(39,) | (40,)": (HUMP, HUMP[:-1]),
             "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
-            "since it resists; reverse its sign": (HUMP, -HUMP),
+            "since it resists; reverse its sign": {"V": HUMP, "M": -resistance().M, "sigma": 0.01},
             "resistance: V is empty: must be at least one number": ([], []),
             "F is empty: must be at least one number": {"V": [1.0], "F": []},
         },
