@@ -237,8 +237,8 @@ def test_a_prediction_has_bands():
         [0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"}
     )
     band = fit.predict(vr.Resistance(speeds)).M
-    fast = fit.cylinder.contact(1.0, delta=0.0).M
-    assert close(band.value.sel(speed="fast").item(), fast, tol.STEADY)
+    fast = band.value.sel(speed="fast").item()
+    assert close(fast, fit.cylinder.contact(1.0, delta=0.0).M, tol.STEADY)
     t = np.linspace(0.0, 30.0, 7)
     by_slopes, drawn = (fit.predict(vr.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))
     exact = roller().roll(3.0, 30.0, t).V
@@ -332,14 +332,12 @@ def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
     assert wide[0] < one - 1.5 * fit.stderr["E"] < one + 1.5 * fit.stderr["E"] < wide[1]
 
 
-@pytest.mark.parametrize("brake", [0.0, 0.2])
-def test_a_roller_on_a_cover_is_pulled_without_torque_but_that_of_its_bearing(brake):
+def test_a_roller_on_a_cover_is_pulled_without_torque_but_that_of_its_bearing():
     """The force is the work over distance of a motion at that speed; M at creepage 0 is 12 %
     larger.
     """
     belt = vr.Material(4e6, 0.3, vr.Prony([3.0, 2.0], [1.0, 0.05]), 1e-2, thickness=0.01)
     pulled = vr.Cylinder(0.1, 35.5, material=vr.Material.rigid(), base=belt, mu=0.5, coupled=False)
-    motion = pulled.roll(None, 10.0, [3.0, 4.0], V=1.0, brake=brake or None, rtol=1e-10)
-    force = vr.Resistance(1.0).model(pulled, {"brake": brake})["F"]
-    work = np.diff(motion.work_force) / np.diff(motion.x)
-    assert close(force, work, tol.MOTION_RTOL * 1e-10)
+    motion = pulled.roll(None, 10.0, [3.0, 4.0], V=1.0, brake=0.2, rtol=1e-10)
+    force = vr.Resistance(1.0).model(pulled, {"brake": 0.2})["F"]
+    assert close(force * np.diff(motion.x), np.diff(motion.work_force), tol.MOTION_RTOL * 1e-10)
