@@ -321,7 +321,7 @@ SHOWN = {
     "material show warm.toml": "unit of time T_ref     0.00295",
     "validity rubber-roller --V 5 --omega 4.99": "steady         yes | small_contact",
     "validity PAPER --V 1.5": "steady         no",
-    "steady PAPER --force 0.12": "load 0: force + torque = 0.12 exceeds",
+    "steady PAPER --force 0.12": "load 0: |force + torque| = 0.12",
 }
 
 

@@ -109,7 +109,7 @@ def warn_of_contact(
     extent: tuple[float, float] | None = None,
     *,
     motion: bool = False,
-    a_T: Any = 1.0,
+    a_T: Any = None,
 ) -> None:
     """Warn of contacts at rest longer than the radius, speeds above the shear wave speed, and
     unmeasured frequencies.
@@ -125,15 +125,15 @@ def warn_of_contact(
     motion: whether the speeds are of a motion, which :func:`warn_of_start` has examined, so that
         neither the length at rest nor the shear wave speed gives a warning here.
     a_T: shift factor of each speed: rates at V are those at V a_T at the reference temperature, for
-        which the band is known.
+        which the band is known; None: 1.
     """
     data = roller.body_data
     if data is None or data.covered_speeds is None or V is None:
         return
     ends = extent or extent_of(V)
-    reduced = np.multiply(V, a_T)
-    of_band = extent_of(reduced)
-    if not any(is_outside(each, data.covered_speeds) for each in (ends, of_band)):
+    reduced = V if a_T is None else V * a_T
+    of_band = ends if a_T is None else extent_of(reduced)
+    if not (is_outside(ends, data.covered_speeds) or is_outside(of_band, data.covered_speeds)):
         return
     if not motion:
         waves = data.wave_speed
