@@ -434,7 +434,7 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     call: name of the function, for errors.
     slip_share: the cylinder's part of the loss in slip, in [0, 1].
     Raises ParameterError for a Scene, for a cylinder by E to T_sigma, for bodies that do not relax
-    and for two of different materials or thicknesses that do.
+    and for two that do and differ in material, thickness, reference temperature or shift.
     """
     slip_share = check_number("slip_share", slip_share, low=0.0, high=1.0)
     pair = roller.body_data and roller.body_data.pair
@@ -452,7 +452,7 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
         raise described_error(
             "material", "does not relax, and rolls without loss", "one with a Prony series"
         )
-    # each has half of both losses, at one temperature; a series alone does not make it so
+    # each has half of both losses, at one temperature; equal series are not enough for that
     same = "thickness", "temperature", "shift", "vertical_shift"
     one, other = ([getattr(body, name) for name in same] for body, _ in bodies)
     if pair.like and one == other:
@@ -490,6 +490,7 @@ def heat_states(
     """
     body = heated_body(roller, call, slip_share)
     curve = shift_curve(body.material)
+    # those that a call needs: None is refused too; others are left out then
     lows = {"conductance": 0.0, "capacity": 0.0, "ambient": -math.inf}
     arrays = {
         name: check_array(name, value, above=lows.get(name, -math.inf))

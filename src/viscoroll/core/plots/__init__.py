@@ -398,7 +398,8 @@ def equilibria(data: Dataset) -> Figure:
         drawn = chosen & np.isfinite(y)
         axes.plot(x[drawn], y[drawn], "o", markerfacecolor=face, label=text, **style)
     axes.set(xlabel=variable_label(data[load]), ylabel=variable_label(data[shown]))
-    speeds = np.abs(_finite(data["V"])) * (shown == "V")
+    # temperatures have an axis that is linear and has no limit
+    speeds = np.abs(_finite(data["V"])) if shown == "V" else np.empty(0)
     speeds = speeds[speeds > 0.0]
     # the initial values make it false where all speeds are 0
     if speeds.max(initial=0.0) > 100.0 * speeds.min(initial=np.inf):
