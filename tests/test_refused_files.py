@@ -86,7 +86,9 @@ REFUSED = [
             "given.nc | V = | shape (0,) | must be real numbers, at least one": OTHER_GRID.isel(
                 V=slice(0)
             ),
-            "given.nc: is not a grid of a law, since it has neither M": OTHER_GRID.drop_vars("M"),
+            "is not a grid of a law, since it has neither the variable M": OTHER_GRID.drop_vars(
+                "M"
+            ),
             "must have V(V), delta(delta), Q(V, delta)": OTHER_GRID.assign(
                 Q=OTHER_GRID.Q.isel(V=0)
             ),

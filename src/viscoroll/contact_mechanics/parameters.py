@@ -546,8 +546,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            "the law of these bodies is a table of pressure and shear solved together: "
-            f"{why}, or give coupled=False for the fast law",
+            f"shear acts on the pressure of these bodies: {why}, or make the Cylinder with "
+            "coupled=False, which neglects that effect",
         )
 
 

@@ -114,8 +114,9 @@ def _noise(fit: Any) -> Iterator[str]:
         points = 9.0 / allowed**2
         yield (
             f"the residuals of {name} are autocorrelated: neighbours correlate by {lag:.2f}, those "
-            f"of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); intervals are those of "
-            f"{points / noise.repeats:.0f} points in place of {points:.0f}, or {_INADEQUATE}"
+            f"of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); if this is noise, the "
+            f"intervals hold: they are already widened to those of {points / noise.repeats:.0f} "
+            f"points in place of {points:.0f}; otherwise {_INADEQUATE}: plot the residuals"
         )
 
 

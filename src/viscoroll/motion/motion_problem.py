@@ -241,7 +241,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refuse_cover(scene, "leave unsteady=True out, as the added mass N is not computed")
+    refuse_cover(scene.uncoupled, "leave unsteady=True out, as the added mass N is not computed")
     if not scene.like_bodies:
         sentence = (
             "unsteady = True: motions with the added mass N are computed for two bodies of "
