@@ -13,8 +13,6 @@ fmu.c with the functions of the standard, their compiled library, and the descri
 from variables.csv, in the order of their value references, which start with 1.
 """
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import re

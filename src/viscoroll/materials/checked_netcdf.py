@@ -9,8 +9,6 @@ of its series; it is written and read by ``to_netcdf`` and ``from_netcdf`` of
 :class:`viscoroll.Material`.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import shlex

@@ -6,8 +6,6 @@ beta_D is 0 at all times.  Layers and half-spaces of one Poisson's ratio differ 
 :func:`layer_excess`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -7,8 +7,6 @@ the public attributes, ``_problem`` (:class:`.least_squares.Problem`), ``_likeli
 Functions of the other report read the public attributes of a :class:`.fit_results.SeriesFit` alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Results of an identification: :class:`Identification`, and :class:`Prediction`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import cached_property

@@ -5,8 +5,6 @@ T_ref is the unit of time of dimensionless motions: T_epsilon of a material that
 ``T_ref`` of any other material.  Speeds are divided by R/T_ref, angular velocities by 1/T_ref.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from typing import Any, NamedTuple

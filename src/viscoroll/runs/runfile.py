@@ -18,8 +18,6 @@ All numbers are dimensionless, or, with [cylinder] and perhaps [material] and [b
 All keys are in docs/ensembles.md.
 """
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
