@@ -7,6 +7,8 @@ are made.  :func:`kramers_kronig` examines whether storage
 and loss modulus can be of one material.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

@@ -5,6 +5,8 @@ Filled rubbers soften with the strain (Payne).  The contact depends on the modul
 the contact, so that the strain is a fixed point: contact -> strain -> moduli -> contact.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """Many motions at once: :func:`ensemble`, and their result, :class:`Ensemble`."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple

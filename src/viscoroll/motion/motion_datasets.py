@@ -2,6 +2,8 @@
 with names, units and provenance.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 

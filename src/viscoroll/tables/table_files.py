@@ -9,6 +9,8 @@ a new major version changes the meaning of something and is refused by older rea
 Save is atomic, and load checks everything it reads.  :func:`interpolate` uses tensor cubic splines.
 """
 
+from __future__ import annotations
+
 import io
 from collections.abc import Iterable
 from os import PathLike
