@@ -248,6 +248,11 @@ REFUSED = [
     *files(
         run,
         {
+            "line 5: [cylinder] mu | table of pressure and shear | coupled = false in": (
+                "rubber on steel",
+                "coupled = false",
+                "",
+            ),
             "line 4: [scene] mu: unknown key 'distribtion'; did you mean 'distribution'?": (
                 "a preset",
                 'distribution = "lognorm"',

@@ -428,9 +428,10 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
             unsteady=settings.unsteady,
             rested=settings.rested,
         )
-        make_problem(
+        problem = make_problem(
             roller, start, drive=Drive(**drive_of(content)), end=run.t[-1], options=options
         )
+        problem.scene.refuse_several_tables()
     except (ParameterError, FileError) as error:
         return error
     return None
