@@ -248,7 +248,7 @@ REFUSED = [
     *files(
         run,
         {
-            "line 5: [cylinder] mu | table of pressure and shear | coupled = false in": (
+            "[base] base_E: material | table of pressure and shear | coupled = false in": (
                 "rubber on steel",
                 "coupled = false",
                 "",
@@ -312,8 +312,8 @@ REFUSED = [
             "values: must be one for all cylinders (thickness, load and R may differ, and "
             "beside a rigid body E and nu": (
                 "on what is rigid",
-                "E = {",
-                "thickness = 0.1\nE = {",
+                "[material]\n",
+                "coupled = false\n[material]\nthickness = 0.1\n",
             ),
             "file.toml: line 10: [drive.brake] drive_brake_time_1: draws extend from "
             "5.55112e-17 to 1: brake | add truncate = [low, high]": (
