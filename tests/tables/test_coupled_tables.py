@@ -208,8 +208,8 @@ def test_many_covers_in_one_call_say_what_their_tables_would_take():
     one = scene_of(BELT)
     covers = one.replace(material=BELT.of_thickness([0.5, 0.6, 0.7]))
     for many, words in (
-        (covers, "material | several values"),
-        (one.replace(mu=[0.2, 0.3]), "mu | several values"),
+        (covers, "material (with a thickness also"),
+        (one.replace(mu=[0.2, 0.3]), "mu has several values"),
     ):
         refused(partial(many.contact, 0.1, delta=0.0), words, "coupled=False")
 
