@@ -312,8 +312,8 @@ REFUSED = [
             "values: must be one for all cylinders (thickness, load and R may differ, and "
             "beside a rigid body E and nu": (
                 "on what is rigid",
-                "[material]\n",
-                "coupled = false\n[material]\nthickness = 0.1\n",
+                "[material]",
+                "coupled = false\n[material]\nthickness = 0.1",
             ),
             "file.toml: line 10: [drive.brake] drive_brake_time_1: draws extend from "
             "5.55112e-17 to 1: brake | add truncate = [low, high]": (
