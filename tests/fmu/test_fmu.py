@@ -206,7 +206,7 @@ def test_roller_by_co_simulation_is_that_of_roll(built, name):
 def test_a_cover_rolls_by_its_law_on_disk(tmp_path):
     """It starts at a load that is its own; another load would be another law."""
     unlike = CYLINDERS["unlike"]
-    cover = vr.Material(3e6, 0.5, vr.Prony([1.5], [1e-2]), T_ref=0.2, thickness=5e-3)
+    cover = vr.Material(3e6, 0.5, vr.Prony([1.5], [1e-2]), 0.2, thickness=5e-3)
     cylinder = unlike.replace(material=cover, base=vr.Material.rigid())
     vr.tables.save(vr.tables.law(cylinder), tmp_path / "law.nc")
     path = str(tmp_path / "roller.fmu")
