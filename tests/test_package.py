@@ -36,7 +36,7 @@ def test_imports_are_light():
     """A contact imports no motions and no heat."""
     code = "vr.presets.PAPER_SECTION_5; vr.Scene(2, 2, 0.2); dir(vr); vr.law; vr.ParameterError"
     names = "print(*{name.split('.')[0] for name in sys.modules})"
-    call = "vr.Scene(2, 2, 0.2).contact(1, delta=0, method='direct'); print(*sys.modules)"
+    call = "vr.Scene(2, 2, 0.2).contact(1, delta=0); print(*sys.modules)"
     loaded = printed(f"import sys, viscoroll as vr; {code}; {names}; {call}")
     light, _, of_contact = loaded.partition("\n")
     assert not set(HEAVY.split()) & set(light.split())
