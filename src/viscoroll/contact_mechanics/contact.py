@@ -111,8 +111,8 @@ def contact(
           V, of the sign of delta V, at V = 0 of delta (of a layer with delta - delta_0 for delta);
           in full slip its size is mu P;
         - ``M``: rolling resistance moment (P R; N m/m), of the sign of V, 0 at V = 0 and of elastic
-          bodies.  Of a layer it has a part by Q too, of either sign, as shear acts back on the
-          pressure; so have lam and epsilon.
+          bodies.  Of a layer, and of half-spaces with Dundurs' constant above 0.05, it has a part
+          by Q too, of either sign, as shear acts back on the pressure; so have lam and epsilon;
 
         Further default fields of some rollers:
 

@@ -153,7 +153,10 @@ def field_names(
             only_table = (UNSTEADY, GRIP, FREE_CREEP, *ONSETS)
             refuse_fields(only_table, names, "left out, or computed with method='table'")
         if cover:
-            allowed = "left out for a cover: the added mass N is not computed for layers"
+            allowed = (
+                "left out: the added mass N is computed for half-spaces alone, with coupled=False "
+                "for those of a Dundurs' constant above 0.05"
+            )
             refuse_fields((UNSTEADY,), names, allowed)
     return tuple(dict.fromkeys(names + added)) if added and fields is None else names
 

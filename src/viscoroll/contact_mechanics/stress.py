@@ -31,7 +31,14 @@ from ..core import (
 )
 from ..laws import CoverModes, half_line_rule, pressure, series_record
 from ..materials import layer_excess, local_coupling, total_series
-from .contact_table import DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
+from .contact_table import (
+    ACCURACY,
+    DEPTH,
+    FREE_CREEP,
+    complete,
+    evaluate_contact,
+    refuse_overflow,
+)
 from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
@@ -168,6 +175,7 @@ def _fields_of_row(
     fields = {
         "lam": found.lam,
         "length": found.lam,
+        ACCURACY: found.lam,
         "epsilon": found.epsilon,
         "beta": found.beta,
         "zeta": zeta,
@@ -339,7 +347,8 @@ def stress(
     delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity, any sign; omega of a
         Cylinder in rad/s, of a Scene multiplied by T_ref.  At V = 0 a delta means the limit V ->
         0+, an omega other than 0 full slip.  All arguments broadcast.
-    method : "table", or "coupled" (:func:`contact`), with which layers have a shear stress too.
+    method : "table", or "coupled" (:func:`contact`), with which bodies whose shear acts on the
+        pressure have a shear stress too.
 
     Returns
     -------
@@ -347,9 +356,10 @@ def stress(
         ``p``: pressure, >= 0.  ``tau``: shear stress on the cylinder in the direction of +x, of the
         sign of omega R - V (at V = 0 of delta), 0 for delta = 0; |tau| <= mu p, with equality in
         the slip zone and, in full slip, in the whole contact.  Both are in Pa of a Cylinder, else
-        divided by E', and 0 outside the contact.  If a body is a layer of finite thickness there is
-        ``p`` alone by method "table": its shear stress is not known.  Both have the broadcast shape
-        of arguments and roller; they are floats if all of these are numbers.
+        divided by E', and 0 outside the contact.  By method "table" there is ``p`` alone, without
+        the effect of shear, for layers of finite thickness, and for half-spaces with Dundurs'
+        constant above 0.05 (unless ``coupled=False``).  Both have the broadcast shape of arguments
+        and roller; they are floats if all of these are numbers.
 
     Raises
     ------
@@ -412,11 +422,12 @@ def _stress_of_law(
     x: distance ahead of the axis, divided by l0; broadcasts with the states.
     V: speeds, dimensionless, any sign.
     creep: omega if ``creep_is_omega``, else the creepage delta.
-    Returns p and tau divided by E', rows of an array, each of the broadcast shape; of a cover p
-    alone.
+    Returns p and tau divided by E', rows of an array, each of the broadcast shape; p alone of a
+    cover and of half-spaces whose states are those of the coupled solution.
     """
     from ..kernels.law.modes import Points
 
+    rows = 1 if scene.tabulated or scene.cover is not None else 2
     scene = scene.uncoupled
     lam, epsilon, beta, zeta, delta = evaluate_contact(
         scene,
@@ -458,7 +469,7 @@ def _stress_of_law(
             tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, p.size, _BLOCK)
-    return out.reshape(2, *shape)[: 2 if scene.cover is None else 1]
+    return out.reshape(2, *shape)[:rows]
 
 
 def _compute_stresses(

@@ -157,6 +157,10 @@ class Result:
             raise KeyError(f"{name!r} is not in this result: it contains {', '.join(self.keys())}")
         return getattr(self, name)
 
+    def __contains__(self, name: object) -> bool:
+        """Whether ``name`` is one of :meth:`keys`."""
+        return name in self.keys()
+
     def __repr__(self) -> str:
         return as_text(*self._summary())
 
