@@ -119,6 +119,11 @@ REFUSED = [
             "column 'j' of j.nc: the file is damaged, or is not a .nc file": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{file("j", "j.nc")}", column = "j" }}'
             ),
+            "unit = 1/min: must be rpm or rad/s, as it may be of turns or of radians": lambda: run(
+                "numbers",
+                'omega0 = { distribution = "norm", loc = 0.05, scale = 0.1 }',
+                'omega0 = {{ column = "n", file = "{}" }}'.format(file("n [1/min]\n1\n", "n.csv")),
+            ),
             "dma.txt | line 2 ('4 5') has 2": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
             "is the law of every alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"

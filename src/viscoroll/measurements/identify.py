@@ -36,11 +36,11 @@ from ..core import (
 from ..materials import SECTIONS
 from ..presets import read_roller
 from ..rollers import Cylinder
-from .dma_columns import CYCLES, meanings
+from .dma_columns import meanings
 from .identification_result import Identification
 from .least_squares import Minimum, Problem
 from .measurement_records import OF_RECORDS, Coastdown, Record, Resistance, Traction
-from .text_cells import NO_UNIT, conversion, readings
+from .text_cells import CYCLES, NO_UNIT, conversion, readings
 from .text_table import Table, column_in_unit, find_column, missing_column, named_table
 from .unknowns import Shift, Unknown, changes_law, cylinder_of, unknowns_of
 
