@@ -59,6 +59,7 @@ REFUSED = [
             "[Pa]\n1;2;3\n2;1e999;3\n3;2.5;3\n",
             "line 3 (400; 1; 1): the frequency must be > 0 and finite": "log f [Hz],E' [Pa],E'' "
             "[Pa]\n2,1,1\n400,1,1\n",
+            "its unit '‰' is not a unit of tan delta": "f [Hz],E' [Pa],tan δ [‰]\n1,1,1\n2,1,1\n",
             "unit 'Hz and rad/s' is not a unit of frequency | unit 'MPa and kPa' is not a unit "
             "of storage": "f [Hz],E' [MPa],E'' [MPa]\nrad/s,kPa,kPa\n1,1,1\n2,1,1\n",
         },

@@ -105,9 +105,9 @@ def _quantity(name: str) -> tuple[str, str] | None:
     Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name
     does not say it or the quantity is no modulus, compliance or stress.
     None if a word is not in the vocabulary, the words together name no quantity, both modes are
-    named, or the text has a sign of a unit, % or °.
+    named, or the text has a sign of a unit, %, ‰ or °.
     """
-    if re.search("[%°º]", name):  # of a unit
+    if re.search("[%‰°º]", name):  # of a unit
         return None
     text = _plain(name)
     for pattern, words in _DATA["signs"]["replaced"]:
