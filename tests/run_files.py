@@ -188,8 +188,11 @@ keep = "all"
 fields = ["V", "omega", "x", "work_torque"]
 """
 WARM = CERTAIN.replace(
-    "0.5\n",
-    """0.5
+    "3e6\nnu = 0.5\n",
+    """U(3e6, 1e6)
+nu = 0.5
+reference = 30.0
+vertical_shift = "entropic"
 prony = { E = [U(1.0, 1.0), 2.0], tau = [1.0, 0.1] }
 T_ref = 0.01
 wlf = { T0 = 20.0, C1 = 8.86, C2 = 101.6 }

@@ -59,6 +59,7 @@ REFUSED = [
             "[Pa]\n1;2;3\n2;1e999;3\n3;2.5;3\n",
             "line 3 (400; 1; 1): the frequency must be > 0 and finite": "log f [Hz],E' [Pa],E'' "
             "[Pa]\n2,1,1\n400,1,1\n",
+            "its unit '‰' is not a unit of tan delta": "f [Hz],E' [Pa],tan δ [‰]\n1,1,1\n2,1,1\n",
             "unit 'Hz and rad/s' is not a unit of frequency | unit 'MPa and kPa' is not a unit "
             "of storage": "f [Hz],E' [MPa],E'' [MPa]\nrad/s,kPa,kPa\n1,1,1\n2,1,1\n",
         },
@@ -120,6 +121,11 @@ REFUSED = [
             ),
             "column 'j' of j.nc: the file is damaged, or is not a .nc file": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{file("j", "j.nc")}", column = "j" }}'
+            ),
+            "unit = 1/min: must be rpm or rad/s, as it may be of turns or of radians": lambda: run(
+                "numbers",
+                'omega0 = { distribution = "norm", loc = 0.05, scale = 0.1 }',
+                'omega0 = {{ column = "n", file = "{}" }}'.format(file("n [1/min]\n1\n", "n.csv")),
             ),
             "dma.txt | line 2 ('4 5') has 2": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
             "is the law of every alpha": lambda: vr.tables.export(

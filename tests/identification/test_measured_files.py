@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shlex
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from experiments import measurements
 import viscoroll as vr
 from viscoroll import cli
 from viscoroll.measurements.identify import read_measurements
+from viscoroll.measurements.unknowns import cylinder_of
 
 
 def test_the_program_reports(here, capsys):
@@ -30,11 +32,17 @@ def test_the_program_reports(here, capsys):
     assert Path("fit.NC").read_bytes().startswith(b"\x89HDF")
 
 
-def test_a_files_temperature_is_where_its_shift_is_one(here):
+def test_a_record_is_at_its_temperature_by_the_shift_of_the_material(here):
+    """Also by one in the file that [material] names."""
+    vr.Material.sls(3e6, 0.5, 0.01, 0.001, shift=vr.WLF(T0=20.0)).to_netcdf("rubber.nc")
     path = measurements(here, "temperature = 20.0\nwlf", "temperature = 60.0\nwlf")
-    shift = read_measurements(path)["shift"]["material"]
-    assert shift(60.0) == 1.0
-    assert shift(20.0) == 1.0 / vr.WLF(T0=20.0)(60.0)
+    text = path.read_text()
+    other = re.sub("(?s)E = 3e6.*?\n\n", 'file = "rubber.nc"\n', text)
+    for each, T_ref in ((text, 1e-3), (other, 0.01)):
+        path.write_text(each)
+        read = read_measurements(path)
+        found = cylinder_of(read["cylinder"], {}, *read["data"])
+        assert close(found.material.T_ref, T_ref, tol.DMA_DIGITS)
 
 
 @pytest.mark.parametrize(

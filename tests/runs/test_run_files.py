@@ -4,6 +4,7 @@ digest and its store.
 
 import re
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -63,9 +64,9 @@ def drawn(part, name, values, i):
     return found
 
 
-def body(wlf=None, temperature=None, **given):
+def body(wlf=None, temperature=None, reference=None, **given):
     """A material at its temperature."""
-    material = vr.Material(**given)
+    material = vr.Material(temperature=reference, **given)
     return material.at(temperature, vr.WLF(**wlf)) if wlf else material
 
 
@@ -104,6 +105,24 @@ def test_every_motion_is_that_of_a_call(text):
             expected = getattr(one, name)
             scale = np.abs(np.nan_to_num(expected)).max()
             assert close(columns[name][i], expected, tol.RUN_SI, scale=scale, what=(name, i))
+
+
+def test_a_temperature_follows_the_shift_of_a_file():
+    """And the moduli, given at the temperature where it is 1, follow the vertical shift."""
+    shifts = 'vertical_shift = "entropic"\nwlf = { T0 = 20.0, C1 = 17.44, C2 = 51.6 }\n'
+    given = "E = 3e6\nnu = 0.5\nT_epsilon = 0.01\nT_sigma = 0.001\n"
+    temperature = 'temperature = { distribution = "uniform", loc = 10.0, scale = 30.0 }\n'
+    Path("rubber.toml").write_text(f"[material]\n{given}{shifts}")
+    found = [
+        roll_block(run_of(CERTAIN.replace("E = 3e6\nnu = 0.5\n", text + temperature)), 0)[1].V
+        for text in (
+            'file = "rubber.toml"\n',
+            given + shifts,
+            given + shifts + "reference = 20.0\n",
+        )
+    ]
+    assert np.array_equal(found[0], found[1])
+    assert np.array_equal(found[0], found[2])
 
 
 @pytest.mark.parametrize("file", sorted(FILES.keys() - {"a temperature each"}))

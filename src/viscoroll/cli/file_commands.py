@@ -182,8 +182,7 @@ def fit(arguments: Namespace) -> int:
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
 
-    A fit is faulty if it misses the required misfit, or if its misfit is above 5 %; standard error
-    then says so, with a path and without.
+    A fit is faulty if its misfit is above the required one or 5 %; standard error then says so.
     """  # noqa: E501
     from ..contact_mechanics import MISFIT_LIMIT
     from ..materials import material_as_toml
@@ -195,11 +194,12 @@ def fit(arguments: Namespace) -> int:
         encoding=arguments.encoding,
         units=arguments.units,
     )
-    if arguments.mode is not None:
-        record = replace(record, mode=arguments.mode)
+    stated = tuple(note for note in record.notes if "is assumed, since" not in note)
+    if arguments.mode and stated != record.notes:
+        record = replace(record, mode=arguments.mode, notes=stated)
     options = {
         name: getattr(arguments, name)
-        for name in ("modes", "misfit", "temperature", "reference", "on")
+        for name in ("modes", "misfit", "temperature", "reference", "on", "mode")
     }
     result = vr.fit_prony(record, **options, shift=arguments.wlf and _wlf(arguments.wlf))
     print(record, result, sep="\n")

@@ -26,7 +26,6 @@ from .material_toml import PronySection as PronySection
 from .material_toml import material_as_toml as material_as_toml
 from .material_toml import parse_materials as parse_materials
 from .material_toml import parse_series as parse_series
-from .material_toml import parse_shifts as parse_shifts
 from .material_toml import read_materials as read_materials
 from .material_toml import series_as_toml as series_as_toml
 from .measured_data import ABSOLUTE_ZERO as ABSOLUTE_ZERO

@@ -5,9 +5,8 @@
 import json
 import math
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -24,7 +23,7 @@ from ..core import (
 )
 from .checked_netcdf import REMEDY, SUFFIX, is_law, read_law, shifts_as_toml
 from .material import Material
-from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift
+from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured
 from .prony import Prony
 
 #: sections of a file that describe a body
@@ -166,28 +165,6 @@ def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material
     }
 
 
-def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
-    """Return the time-temperature shifts of those materials of a file that have one.
-
-    path: path of the file, for errors.
-    content: sections of the file by name, as tomllib reads them.
-    Returns a dict from "material" and "base", those with a key wlf or arrhenius, to a function of a
-    temperature in degrees Celsius.  It returns the factor of all times, dimensionless, > 0, from
-    the key ``temperature`` of the section, at which it is 1, to that temperature; without the key
-    it is the shift itself.  The function raises ParameterError for a temperature that the shift
-    does not allow and for a factor that no double holds.
-    Raises FileError for a section that is wrong, also one with both wlf and arrhenius.
-    """
-    sections = {
-        name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content
-    }
-    return {
-        name: partial(relative_shift, shift, reference=section.temperature)
-        for name, section in sections.items()
-        if (shift := _shift_of(path, name, section))
-    }
-
-
 def material_as_toml(material: Material, section: str = "material") -> str:
     """Return the TOML section that reads back as a material, to the bit.
 
@@ -281,6 +258,9 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
         else:
             other = _read_other_file(path, name, Path(path).parent / given.pop("file"))
             material = replace(other, **given)
+        if material.vertical_shift and material.shift and material.temperature is None:
+            # given as at the temperature where the shift is 1
+            material = replace(material, temperature=material.shift.T0)  # type: ignore[attr-defined]
         if temperature is None:
             return material
         if material.shift is None:

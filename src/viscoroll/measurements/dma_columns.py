@@ -16,7 +16,7 @@ import numpy as np
 
 from ..core import FileError, ParameterError, described_error, suggestion
 from ..materials import ABSOLUTE_ZERO
-from .text_cells import MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
+from .text_cells import CYCLES, MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
 from .text_table import Table, find_column
 
 # --- Names of the columns of tests of materials in five languages ---
@@ -103,9 +103,9 @@ def _quantity(name: str) -> tuple[str, str] | None:
     Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name
     does not say it or the quantity is no modulus, compliance or stress.
     None if a word is not in the vocabulary, the words together name no quantity, both modes are
-    named, or the text has a sign of a unit, % or °.
+    named, or the text has a sign of a unit, %, ‰ or °.
     """
-    if re.search("[%°º]", name):  # of a unit
+    if re.search("[%‰°º]", name):  # of a unit
         return None
     text = _plain(name)
     for pattern, words in _DATA["signs"]["replaced"]:
@@ -148,8 +148,6 @@ _RANGES = {
     "phase angle": (-math.inf, 0.5 * math.pi, "below 90 degrees"),
     "temperature": (ABSOLUTE_ZERO, math.inf, f"above {ABSOLUTE_ZERO} °C"),
 }
-#: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
-CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*min|deg|°")
 #: a heading that begins with G and at most three further letters or digits
 _OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
 #: units of what instruments measure beside moduli, which end a heading without brackets
@@ -338,7 +336,7 @@ def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]
         conversion(unit, UNITS[name])
     except ParameterError:
         return problem
-    if "angular" in name and unit.lower().endswith("hz"):
+    if "angular" in name and unit.lower().endswith(("hz", "cps")):
         return (
             f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
             f"heading, or {unit_advice(name)}"

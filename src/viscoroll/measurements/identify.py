@@ -31,14 +31,14 @@ from ..core import (
     suggestion,
     warn_of_model,
 )
-from ..materials import SECTIONS, parse_shifts
+from ..materials import SECTIONS
 from ..presets import read_roller
 from ..rollers import Cylinder
-from .dma_columns import CYCLES, meanings
+from .dma_columns import meanings
 from .identification_result import Identification
 from .least_squares import Minimum, Problem
 from .measurement_records import OF_RECORDS, Coastdown, Record, Resistance, Traction
-from .text_cells import NO_UNIT, conversion, readings
+from .text_cells import CYCLES, NO_UNIT, conversion, readings
 from .text_table import Table, column_in_unit, find_column, missing_column, named_table
 from .unknowns import Shift, Unknown, changes_law, cylinder_of, unknowns_of
 
@@ -97,8 +97,8 @@ def identify(
         None without; the standard deviation is that of the natural logarithm, dimensionless, but
         for brake, drag, nu and unknowns of records, of which it is that of the value, SI.
     shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function that
-        takes degrees Celsius and returns a_T, 1 at the temperature of the cylinder; None without
-        temperatures of records; where its bodies differ {"material": ..., "base": ...}.
+        takes degrees Celsius and returns a_T, 1 at the temperature of the cylinder; where its
+        bodies differ {"material": ..., "base": ...}; None: the shifts of the materials themselves.
     robust : let outliers count less, as |r| in place of r^2, of data and prior.
     starts : number of searches, >= 1, the first from the cylinder, the others from points spread
         over the ranges; of a plan only the first.  Two more are made where the first one ends far
@@ -118,8 +118,8 @@ def identify(
         ascend or does not contain the start value; no unknowns, or more of them than points and
         priors together (less one, where a standard deviation is estimated); no records, a plan
         without standard deviations, records with and without values, two records of one name; an
-        open V0 or omega0 of which the record has no data; a temperature of a record without
-        ``shift``; a prior of what is no unknown; ``starts`` or ``seed`` out of range; ``progress``
+        open V0 or omega0 of which the record has no data; a temperature of a record without a
+        shift; a prior of what is no unknown; ``starts`` or ``seed`` out of range; ``progress``
         that is no truth value; a plan at whose start values there is no contact or no motion.
 
     Examples
@@ -392,9 +392,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
         - "cylinder": the :class:`Cylinder`;
         - "unknown", "prior": dicts, name -> list of two numbers as the file has them, not checked
           here; without [prior] that dict is empty;
-        - "data": list of the records, as :class:`Resistance`, in the order of the file;
-        - "shift": dict, "material" or "base" -> function a_T of the temperature in degrees Celsius,
-          for those of the two sections that have ``wlf`` or ``arrhenius``.
+        - "data": list of the records, as :class:`Resistance`, in the order of the file.
 
     Raises
     ------
@@ -432,7 +430,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
         _record(Path(path), section, number) for number, section in enumerate(content["data"], 1)
     ]
     ranges = {name: content[name] for name in ("unknown", "prior")}
-    return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | ranges
+    return {"cylinder": cylinder, "data": data} | ranges
 
 
 def _record(path: Path, content: Any, number: int) -> Record:

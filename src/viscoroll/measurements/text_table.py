@@ -14,6 +14,7 @@ import numpy as np
 
 from ..core import FileError, Floats, ParameterError, is_unit, suggestion, warn_of_model
 from .text_cells import (
+    CYCLES,
     MULTIPLIED,
     NO_UNIT,
     SEPARATORS,
@@ -560,8 +561,12 @@ def conversion_of_column(
     wanted: unit in which it is taken; "" and "1" give no warning.
     advice: how the file states the unit.
     Returns (factor, offset) of number in ``wanted`` = factor * number + offset.
-    Raises ParameterError for a unit that is unknown or of another dimension.
+    Raises ParameterError for a unit that is unknown or of another dimension, and for an angular
+    velocity in 1/min or such, which may be of turns or of radians.
     """
     if unit in NO_UNIT and wanted not in ("", "1"):
         warn_of_model(f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}")
-    return (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
+    found = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
+    if wanted == "rad s-1" and found[0] != 1.0 and not CYCLES.search(unit):
+        raise ParameterError("unit", unit, "rpm or rad/s, as it may be of turns or of radians")
+    return found

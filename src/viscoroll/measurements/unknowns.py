@@ -219,8 +219,8 @@ def cylinder_of(
         if it has them, and to whose temperature, if it has one, the materials are shifted; None: no
         record.
     shifts : "material" or "base" -> function of the temperature in degrees Celsius that returns
-        a_T; needed of each viscoelastic body where the record has a temperature, not of elastic
-        ones (alpha = 1) and rigid ones.
+        a_T, in place of the shift of the body itself; one of both is needed of each viscoelastic
+        body where the record has a temperature, not of elastic ones (alpha = 1) and rigid ones.
     Returns the :class:`Cylinder`; ``cylinder`` itself where nothing changes.
 
     Raises
@@ -234,14 +234,14 @@ def cylinder_of(
     for section, body in _bodies(cylinder).items():
         changed = _replace_values(body, _PREFIX[section], values)
         if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
-            if section not in shifts:
+            if not (shift := shifts.get(section, body.shift)):
                 raise ParameterError(
                     record.label("temperature"),
                     record.temperature,
                     f"left out, or given with shift={{{section!r}: vr.WLF(T0=20.0)}}, in a file "
                     f"with wlf = {{ T0 = 20.0 }} in [{section}]",
                 )
-            changed = changed.at(record.temperature, shifts[section])
+            changed = changed.at(record.temperature, shift)
         if changed is not body:
             changes[section] = changed
     return cylinder.replace(**changes) if changes else cylinder

@@ -18,7 +18,8 @@ from ..materials import (
     Solid,
     parse_materials,
     parse_series,
-    parse_shifts,
+    relative_shift,
+    vertical_factor,
 )
 from ..presets import make_roller
 from ..rollers import Cylinder, Scene, scene_of
@@ -313,8 +314,9 @@ def _body(path: Path, name: str, section: Any) -> Any:
     Returns the Material of the first motion if no key of E, nu, thickness, series and temperature
     is an array; else a Solid, in which those of E, nu, thickness and series that differ have the
     shape (n,), the others (), and thickness is None of a half-space.  Its T_ref, in s, is that of
-    the first motion; a temperature that differs multiplies the relaxation times, by one factor for
-    each motion.  Whether E, nu, thickness and series have one n is not compared.
+    the first motion; a temperature that differs multiplies the relaxation times, and with a
+    vertical shift E, by one factor for each motion.  Whether E, nu, thickness and series have one n
+    is not compared.
     Raises ParameterError for E or thickness <= 0, E infinite, nu out of (-1, 0.5] or a temperature
     that the shift does not allow, in an array, and where temperatures and series have different n;
     FileError as :func:`_first_material`, and for a series out of range; ValueError for arrays of
@@ -325,14 +327,18 @@ def _body(path: Path, name: str, section: Any) -> Any:
         return section
     series = parse_series(path, name, section) or typical.prony
     # the series, and T_ref, are those at the temperature of the first motion
-    if (factors := _time_factors(path, name, section)) is not None:
+    if (factors := _time_factors(typical, section)) is not None:
         series = series.slower(factors)
     E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
         return typical
     if thickness is not None:
         thickness = check_array("thickness", thickness, above=0.0)
-    E = check_array("E", E, above=0.0) if np.ndim(E) else typical.E
+    # a given E is that at the reference temperature, that of ``typical`` at its temperature
+    E = check_array("E", E, above=0.0) * (typical.E / E[0]) if np.ndim(E) else typical.E
+    if factors is not None and typical.vertical_shift:
+        shift, base = typical.vertical_shift, typical.temperature
+        E = E * np.array([vertical_factor(shift, at, base) for at in section["temperature"]])
     return Solid(
         E=E,
         nu=check_array("nu", nu, above=-1.0, high=0.5),
@@ -362,34 +368,36 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
         return bands
     for name in SECTIONS:
         section = content.get(name)
-        if section is None or (record := _first_material(path, name, section).measured) is None:
+        if section is None:
             continue
-        factors = None if isinstance(section, Material) else _time_factors(path, name, section)
+        typical = _first_material(path, name, section)
+        if (record := typical.measured) is None:
+            continue
+        factors = None if typical is section else _time_factors(typical, section)
         bands[record] = tuple(
             end if factors is None else end / factors for end in record.transit_band
         )
     return bands
 
 
-def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
+def _time_factors(typical: Material, section: Mapping[str, Any]) -> Floats | None:
     """Return the factors of the relaxation times at the temperature of each motion, relative to
     those of the first.
 
-    path: path of the run file, for errors.
-    name: "material" or "base".
-    section: content of that section, with a key wlf or arrhenius, whose "temperature", in degrees
-        Celsius, may be an array (n,); of other arrays, also in the shift, the first element is
-        taken.
+    typical: material of the first motion, at its temperature.  Where temperatures differ it has a
+        shift, of the section or of the file that the section names.
+    section: content of the section [material] or [base], whose "temperature", in degrees Celsius,
+        may be an array (n,).
     Returns the factors, dimensionless, > 0, (n,), of which the first is 1: below 1 where a motion
     is hotter than the first, so that its material relaxes faster; None if the temperature is a
     number or not given.
-    Raises KeyError for an array of temperatures without a key wlf or arrhenius, ParameterError for
-    a temperature that the shift does not allow, FileError for a section that is wrong.
+    Raises ParameterError for a temperature that the shift does not allow.
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None
-    shift = parse_shifts(path, {name: _first(section)})[name]
-    return np.array([shift(temperature) for temperature in section["temperature"]])
+    shift, base = typical.shift, typical.temperature
+    assert shift is not None
+    return np.array([relative_shift(shift, at, base) for at in section["temperature"]])
 
 
 def _first(part: Any) -> Any:
