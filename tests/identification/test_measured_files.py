@@ -18,7 +18,7 @@ from viscoroll.measurements.identify import read_measurements
 def test_the_program_reports(here, capsys):
     """The case of the suffix does not matter."""
     measurements(here)
-    line = "identify data.toml --starts 1 -o".split()
+    line = ["identify", "data.toml", "--starts", "1", "-o"]
     assert cli.main([*line, "fit.JSON", "--plot", "fit.png"]) == 0
     assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2, ")
     found = json.loads(Path("fit.JSON").read_text())
