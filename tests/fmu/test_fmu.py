@@ -3,6 +3,7 @@ refusals in words.
 """
 
 import ctypes
+import dataclasses
 import shutil
 import sys
 from functools import cache, partial

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import shlex
 from pathlib import Path
 
 import pytest
@@ -21,14 +20,14 @@ from viscoroll.measurements.unknowns import cylinder_of
 def test_the_program_reports(here, capsys):
     """The case of the suffix does not matter."""
     measurements(here)
-    line = "identify data.toml --starts 1 -o fit.JSON --plot fit.png"
-    assert cli.main(shlex.split(line)) == 0
+    line = ["identify", "data.toml", "--starts", "1", "-o"]
+    assert cli.main([*line, "fit.JSON", "--plot", "fit.png"]) == 0
     assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2, ")
     found = json.loads(Path("fit.JSON").read_text())
     assert found["unknowns"]["T_ref"]["interval"][0] < 1e-3
     assert found["does_not_act"] == []
     assert Path("fit.png").exists()
-    assert cli.main(shlex.split(line.replace("JSON", "NC"))) == 0
+    assert cli.main([*line, "fit.NC"]) == 0
     assert Path("fit.NC").read_bytes().startswith(b"\x89HDF")
 
 
