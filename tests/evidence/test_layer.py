@@ -10,6 +10,7 @@ import tolerances as tol
 from closeness import close
 from places import DATA, DOCS
 
+import viscoroll as vr
 from pipeline.evidence.prove import layer
 from viscoroll.contact_mechanics.assumptions import THICK_LIMIT
 
@@ -39,3 +40,14 @@ def test_the_page_states_what_is_kept():
             assert close(layer.load(2.0 / (length * by), row["nu"]) * by**2, 1.0, tol.LAYER_KEPT)
     least = min(row["limit"] for row in ROWS)
     assert 0.95 * least <= THICK_LIMIT <= least
+
+
+def test_covers_that_relax_between_nodes():
+    """Laws that are interpolated over thickness are those of each; of elastic ones: test_covers.py."""
+    covers = vr.Cover(vr.Prony([10.0], [1.0]), nu=0.3, thickness=[0.52, 0.6], on="base")
+    scene = vr.Scene(material=covers, kappa=10.0, mu=0.3, coupled=False)
+    found = scene.contact(0.01, delta=-2e-3, slopes=True)
+    for n, cover in enumerate(covers):
+        known = scene.replace(material=cover).contact(0.01, delta=-2e-3, slopes=True)
+        for name, value in known.as_dict().items():
+            assert close(found[name][n], value, tol.COVER_EACH, what=name)
