@@ -43,7 +43,7 @@ def test_the_page_states_what_is_kept():
 
 
 def test_covers_that_relax_between_nodes():
-    """Laws that are interpolated over thickness are those of each; of elastic ones: test_covers.py."""
+    """Laws interpolated over thickness are those of each; of elastic ones: test_covers.py."""
     covers = vr.Cover(vr.Prony([10.0], [1.0]), nu=0.3, thickness=[0.52, 0.6], on="base")
     scene = vr.Scene(material=covers, kappa=10.0, mu=0.3, coupled=False)
     found = scene.contact(0.01, delta=-2e-3, slopes=True)
