@@ -14,6 +14,7 @@ from calls import STEEL
 from closeness import close
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from many import assert_covers_are_each
 from refusals import refused
 
 import viscoroll as vr
@@ -257,48 +258,23 @@ AT_NODES = vr.Cover(
 )
 
 
-@pytest.fixture
-def two_nodes(monkeypatch):
-    """Laws of an octave of thickness are made at two nodes, not at 14."""
-    laws_per_element._laws_of_octave.cache_clear()
-    monkeypatch.setattr(laws_per_element, "_THICKNESS_NODES", 2)
-    yield
-    laws_per_element._laws_of_octave.cache_clear()
-
-
-def assert_each(cover):
-    """States and motions of many covers are those of each."""
-    scene = scene_on(cover)
-    V = np.array([0.01, -0.5])
-    motion = (0.1, [1.0, 9.0])
-    found = scene.contact(V, delta=-2e-3, slopes=True)
-    motions = scene.ensemble(V, *motion, rtol=1e-10)
-    for n, each in enumerate(cover):
-        one = scene_on(each)
-        for name, value in one.contact(V[n], delta=-2e-3, slopes=True).as_dict().items():
-            assert close(found[name][n], value, tol.COVER_EACH, what=name)
-        assert close(motions.V[n], one.roll(V[n], *motion, rtol=1e-10).V, tol.COVER_EACH_MOTION)
-
-
 @pytest.mark.parametrize("cover", [MANY, MANY_NU])
 def test_a_thickness_each(cover):
     """Between the nodes of elastic covers; of covers that relax: tests/evidence/test_layer.py."""
-    assert_each(cover)
+    assert_covers_are_each(cover)
 
 
-@pytest.mark.usefixtures("two_nodes")
-def test_covers_that_relax_at_nodes():
-    """There nothing is interpolated; one cylinder a load are covers of one thickness/l0 each."""
-    assert_each(AT_NODES)
-    load = [1.2e3, 1.6e3]
-    belt = vr.Material(2e6, 0.3, ONE, 0.1, thickness=0.01)
-    rollers = roller_of(RIGID, belt, load)
-    l0 = rollers.l0
-    scene = vr.Scene(
-        material=AT_NODES.of_thickness(0.01 / l0), kappa=0.1 / l0, mu=0.5, coupled=False
-    )
+def test_covers_that_relax_at_nodes(monkeypatch):
+    """At the two nodes of an octave, instead of 14, nothing is interpolated; one cylinder a load
+    are covers of one thickness/l0 each.
+    """
+    monkeypatch.setattr(laws_per_element, "_THICKNESS_NODES", 2)
+    assert_covers_are_each(AT_NODES)
+    rollers = roller_of(RIGID, vr.Material(2e6, 0.3, ONE, 0.1, thickness=0.01), [1.2e3, 1.6e3])
+    scene = rollers.scene()
     known = scene.contact(1.0 / rollers.scale["V"], delta=0.0).M
     assert close(rollers.contact(1.0, delta=0.0).M, known * rollers.scale["M"], tol.SCENE)
+    assert close(scene.material.thickness * rollers.l0, 0.01, tol.SCENE)
     assert rollers.validity(1.0).thick.value.shape == (2,)
 
 
@@ -409,23 +385,21 @@ def test_a_thickness_in_SI_units():
     tells of it.
     """
     thin = dataclasses.replace(THIN, prony=ONE)
-    rubber = dataclasses.replace(vr.Material.elastic(2e6, 0.49), thickness=0.01)
-    for series, material, base, on in (
-        (1.0, rubber, STEEL, "cylinder"),
-        (ONE, RIGID, thin, "base"),
-    ):
+    elastic = dataclasses.replace(THIN, prony=vr.Prony.elastic())
+    for material, base, on in ((elastic, STEEL, "cylinder"), (RIGID, thin, "base")):
         roller = roller_of(material, base)
         found = roller.contact(1.0, delta=0.0)
         scene = roller.scene()
-        assert scene.material.on == on
+        cover = scene.material
+        assert cover.on == on
         plain = scene.replace(
-            material=vr.Cover(series, nu=0.49, thickness=scene.material.thickness, on=on)
+            material=vr.Cover(cover.layer, nu=0.49, thickness=cover.thickness, on=on)
         )
         known = plain.contact(1.0 / roller.scale["V"], delta=0.0)
         rel = tol.COVER_ON_STEEL if base is STEEL else tol.SCENE
         for name in ("lam", "epsilon", "delta_star", "delta_0"):
             assert close(found[name], known[name], rel)
-        assert close(scene.material.thickness * roller.l0, 0.01, tol.SCENE)
+        assert close(cover.thickness * roller.l0, 0.01, tol.SCENE)
         thick = roller.validity(1.0).thick
         assert close(thick.value, 0.5 * found.length / 0.01, tol.CONTACT)
         assert thick.holds

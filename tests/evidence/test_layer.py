@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from many import assert_covers_are_each
 from places import DATA, DOCS
 
 import viscoroll as vr
@@ -44,10 +45,5 @@ def test_the_page_states_what_is_kept():
 
 def test_covers_that_relax_between_nodes():
     """Laws interpolated over thickness are those of each; of elastic ones: test_covers.py."""
-    covers = vr.Cover(vr.Prony([10.0], [1.0]), nu=0.3, thickness=[0.52, 0.6], on="base")
-    scene = vr.Scene(material=covers, kappa=10.0, mu=0.3, coupled=False)
-    found = scene.contact(0.01, delta=-2e-3, slopes=True)
-    for n, cover in enumerate(covers):
-        known = scene.replace(material=cover).contact(0.01, delta=-2e-3, slopes=True)
-        for name, value in known.as_dict().items():
-            assert close(found[name][n], value, tol.COVER_EACH, what=name)
+    series = vr.Prony([10.0], [1.0])
+    assert_covers_are_each(vr.Cover(series, nu=0.3, thickness=[0.52, 0.6], on="base"))
