@@ -98,10 +98,10 @@ def test_one_alpha_of_a_file_of_every_alpha(tmp_path):
     saved = tmp_path / "law.nc"
     tables.save(tables.law(alpha=(1, 3.0)), saved)
     assert "alpha = 1 to 4" in tables.info(saved)
-    loaded = vr.load_law(saved, alpha=2.5)
-    assert np.array_equal(loaded.coefficients, law_axis(1.0, 3.0).at(2.5).coefficients)
+    loaded = vr.load_law(saved, alpha=1.5)
+    assert np.array_equal(loaded.coefficients, law_axis(1.0, 3.0).at(1.5).coefficients)
     scene = vr.Scene(kappa=20.0, mu=0.3, material=loaded)
-    own = vr.Scene(2.5, 20.0, 0.3)
+    own = vr.Scene(1.5, 20.0, 0.3)
     assert scene == own
     exact = own.contact(V, delta=DELTA)
     for name, value in scene.contact(V, delta=DELTA).as_dict().items():
