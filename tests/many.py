@@ -3,6 +3,8 @@
 from functools import partial
 
 import numpy as np
+import tolerances as tol
+from closeness import close
 
 import viscoroll as vr
 
@@ -82,3 +84,17 @@ MATERIALS = {
     "6 modes over 14 decades": lambda: series(2, 6, 14.0, 6),
     "16 modes": lambda: series(3, 16, 10.0, 4),
 } | {kind: partial(vr.Bodies, *bodies) for kind, bodies in PAIRS.items()}
+
+
+def assert_covers_are_each(covers):
+    """States and motions of two covers in one call are those of each."""
+    scene = vr.Scene(material=covers, kappa=10.0, mu=0.3, gamma=0.5, coupled=False)
+    V = np.array([0.01, -0.5])
+    motion = (0.1, [1.0, 9.0])
+    found = scene.contact(V, delta=-2e-3, slopes=True)
+    motions = scene.ensemble(V, *motion, rtol=1e-10)
+    for n, cover in enumerate(covers):
+        one = scene.replace(material=cover)
+        for name, value in one.contact(V[n], delta=-2e-3, slopes=True).as_dict().items():
+            assert close(found[name][n], value, tol.COVER_EACH, what=name)
+        assert close(motions.V[n], one.roll(V[n], *motion, rtol=1e-10).V, tol.COVER_EACH_MOTION)

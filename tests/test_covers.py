@@ -14,6 +14,7 @@ from calls import STEEL
 from closeness import close
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from many import assert_covers_are_each
 from refusals import refused
 
 import viscoroll as vr
@@ -24,7 +25,7 @@ from viscoroll.tables.law_dataset import check_table
 
 ONE = vr.Prony([10.0], [1.0 / 11.0])
 THREE = vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003])
-WIDE = vr.Prony(np.logspace(-1.0, 0.5, 5), np.logspace(3.0, -9.0, 5))
+WIDE = vr.Prony(np.logspace(-1.0, 0.5, 3), np.logspace(1.0, -7.0, 3))
 KAPPA = 10.0
 MU = 0.3
 THIN = vr.Material(2e6, 0.49, THREE, 0.1, thickness=0.01)
@@ -117,7 +118,7 @@ def test_rows_are_the_solve(scene):
 
 @pytest.mark.parametrize("scene", [*SCENES, scene_on(vr.Cover(WIDE, nu=0.5, thickness=0.2))])
 def test_rows_join(scene):
-    """Nothing jumps at the ends of octaves, also where rates are twelve decades apart."""
+    """Nothing jumps at the ends of octaves, also where rates are eight decades apart."""
     V = np.array([[1.0 - 1e-15], [1.0 + 1e-15]]) * 2.0 ** np.arange(-20, 90) / KAPPA
     c = free(scene, V)
     full = scene.contact(V, delta=1.0)
@@ -156,7 +157,7 @@ def test_a_thin_compressible_cover_is_a_foundation():
     assert close(2.0 * ratios[1] - ratios[0], 1.0, 0.1 * tol.COVER_THIN)
 
 
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=2, deadline=None)
 @given(
     st.floats(0.0, 0.5),
     st.floats(-0.8, 2.0),
@@ -246,33 +247,32 @@ def test_energy_of_motions(scene, name):
     )
 
 
-#: in one octave; elastic, on either side of an octave, with a Poisson's ratio each
-MANY = vr.Cover(ONE, nu=0.3, thickness=[0.52, 0.6], on="base")
-MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5], thickness=[0.45, 0.55])
+#: covers that relax, at the two nodes of an octave
+AT_NODES = vr.Cover(ONE, nu=0.3, thickness=[0.5534199700661632, 0.9034729988876682], on="base")
+#: on either side of an octave; with a Poisson's ratio each
+ELASTIC = (
+    vr.Cover(1.0, nu=0.3, thickness=[0.45, 0.55]),
+    vr.Cover(1.0, nu=[0.0, 0.5], thickness=[0.52, 0.6]),
+)
 
 
-@pytest.mark.parametrize("cover", [MANY, MANY_NU])
+@pytest.mark.parametrize("cover", ELASTIC)
 def test_a_thickness_each(cover):
-    """States and motions of many covers are those of each."""
-    scene = scene_on(cover)
-    V = np.array([0.01, -0.5])
-    motion = (0.1, [1.0, 9.0])
-    found = scene.contact(V, delta=-2e-3, slopes=True)
-    motions = scene.ensemble(V, *motion, rtol=1e-10)
-    for n, each in enumerate(cover):
-        one = scene_on(each)
-        for name, value in one.contact(V[n], delta=-2e-3, slopes=True).as_dict().items():
-            assert close(found[name][n], value, tol.COVER_EACH, what=name)
-        assert close(motions.V[n], one.roll(V[n], *motion, rtol=1e-10).V, tol.COVER_EACH_MOTION)
+    """Between the nodes of elastic covers; of covers that relax: tests/evidence/test_layer.py."""
+    assert_covers_are_each(cover)
 
 
-def test_a_load_each():
-    """Cylinders whose loads, and with them thicknesses over l0, differ: of the covers above."""
-    load = [1.2e3, 1.6e3]
-    belt = vr.Material(2e6, 0.3, ONE, 0.1, thickness=0.01)
-    rollers = roller_of(RIGID, belt, load)
-    alone = roller_of(RIGID, belt, load[1]).contact(1.0, delta=0.0)
-    assert close(rollers.contact(1.0, delta=0.0).M[1], alone.M, tol.COVER_EACH)
+def test_covers_that_relax_at_nodes(monkeypatch):
+    """At the two nodes of an octave, instead of 14, nothing is interpolated; one cylinder a load
+    are covers of one thickness/l0 each.
+    """
+    monkeypatch.setattr("viscoroll.laws.laws_per_element._THICKNESS_NODES", 2)
+    assert_covers_are_each(AT_NODES)
+    rollers = roller_of(RIGID, vr.Material(2e6, 0.3, ONE, 0.1, thickness=0.01), [1.2e3, 1.6e3])
+    scene = rollers.scene()
+    known = scene.contact(1.0 / rollers.scale["V"], delta=0.0).M
+    assert close(rollers.contact(1.0, delta=0.0).M, known * rollers.scale["M"], tol.SCENE)
+    assert close(scene.material.thickness * rollers.l0, 0.01, tol.SCENE)
     assert rollers.validity(1.0).thick.value.shape == (2,)
 
 
@@ -383,19 +383,21 @@ def test_a_thickness_in_SI_units():
     tells of it.
     """
     thin = dataclasses.replace(THIN, prony=ONE)
-    for material, base, on in (
-        (RIGID, thin, "base"),
-        (thin, STEEL, "cylinder"),
-    ):
+    elastic = dataclasses.replace(THIN, prony=vr.Prony.elastic())
+    for material, base, on in ((elastic, STEEL, "cylinder"), (RIGID, thin, "base")):
         roller = roller_of(material, base)
         found = roller.contact(1.0, delta=0.0)
         scene = roller.scene()
-        assert scene.material.on == on
-        plain = scene.replace(material=vr.Cover(ONE, nu=0.49, thickness=0.01 / roller.l0, on=on))
+        cover = scene.material
+        assert cover.on == on
+        plain = scene.replace(
+            material=vr.Cover(cover.layer, nu=0.49, thickness=cover.thickness, on=on)
+        )
         known = plain.contact(1.0 / roller.scale["V"], delta=0.0)
         rel = tol.COVER_ON_STEEL if base is STEEL else tol.SCENE
         for name in ("lam", "epsilon", "delta_star", "delta_0"):
             assert close(found[name], known[name], rel)
+        assert close(cover.thickness * roller.l0, 0.01, tol.SCENE)
         thick = roller.validity(1.0).thick
         assert close(thick.value, 0.5 * found.length / 0.01, tol.CONTACT)
         assert thick.holds
@@ -434,8 +436,12 @@ def test_the_mirrored_strain(series, nu, thickness, u, known):
         assert close(f_h + f_c + g_h + g_c, sign * known, tol.COVER_MIRRORED, scale=1.0)
 
 
-def test_covers_of_one_octave_have_as_many_rows():
-    """1/tau times the thickest is a power of 2 here, which rounding missed for some."""
+def test_covers_of_one_octave_have_as_many_rows(monkeypatch):
+    """1/tau times the thickest is a power of 2 here, which rounding missed for some; whatever the
+    rows are fitted to.
+    """
+    solved = "viscoroll.laws.cover_rows._solve_nodes"
+    monkeypatch.setattr(solved, lambda modes, u, orders: np.ones((11, u.size)))
     rubber = vr.Prony([2.0], [1.0])
     nodes = vr.Cover(rubber, nu=0.4, thickness=1.2), vr.Cover(rubber, nu=0.4, thickness=1.27)
     assert len({len(cover_rows(each, 2.0).coefficients) for each in nodes}) == 1

@@ -208,17 +208,18 @@ def contact_enclosure(
     return state
 
 
-def enclosed(given: Row, bits: int) -> Row:
+def enclosed(given: Row, bits: int, near: Row | None = None) -> Row:
     """``contact_enclosure`` of exact balls with V > 0 and delta >= 0; alpha: a ball, a series or a
     pair of bodies.
 
-    And the parts of M.
+    And the parts of M.  ``near``: a state of nearly the same inputs, at whose lengths the search
+    for the lengths starts; no ball rests on it.
     """
     working = bits + 60
     state = None
     while working <= _MOST_BITS:
         with flint.ctx.workprec(working), suppress(ZeroDivisionError):
-            state = _state(**given)
+            state = _state(**given, near=near or {})
         if state is not None and all(
             state[name].rel_accuracy_bits() >= bits for name in state if name != "full_slip"
         ):
@@ -242,7 +243,9 @@ def condition_numbers(given: Row, bits: int = 40) -> dict[str, float]:
         step = arb(2) ** -_STEP_BITS
         for name in INPUTS:
             moved = enclosed(
-                given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits
+                given | {name: given[name] * (1 - step if name == "delta" else 1 + step)},
+                bits,
+                base,
             )
             for field, value in base.items():
                 if value != 0:
@@ -257,12 +260,14 @@ def slopes(given: Row, bits: int = 100) -> Row:
     V > 0 and 0 < delta < delta_star.  Their own error is of the order of the step squared, 2^-360.
     """
     bits += _STEP_BITS
+    near = enclosed(given, bits)
     found = {}
     with flint.ctx.workprec(4 * bits):
         step = arb(2) ** -_STEP_BITS
         for by in ("V", "delta"):
             up, down = (
-                enclosed(given | {by: given[by] * (1 + sign * step)}, bits) for sign in (1, -1)
+                enclosed(given | {by: given[by] * (1 + sign * step)}, bits, near)
+                for sign in (1, -1)
             )
             for name in ("Q", "M") if by == "V" else ("Q",):
                 found[f"d{name}_d{by}"] = (up[name] - down[name]) / (2 * step * given[by])
@@ -308,13 +313,17 @@ def ratio_k(z):
 
     Arb takes seconds for few digits where it is near to choose either: 8 z bits more, of which 3 z
     cancel, leave no choice.  The series is taken at the middle of the ball; 0 < k' < k/z < k/z at
-    the lower end carries the radius over.
+    the lower end carries the radius over.  K1, whose series takes as long as that of K0, follows
+    from I0 K1 + I1 K0 = 1/z.
     """
     if 5 * z > 3 * flint.ctx.prec:  # exp(-2 z) is far below the last digit
         return z.bessel_k(0, scaled=True) / z.bessel_k(1, scaled=True)
     middle = z.mid()
     with flint.ctx.extraprec(8 * int(float(z.upper())) + 64):
-        k = middle.bessel_k(0, scaled=True) / middle.bessel_k(1, scaled=True)
+        K0 = middle.bessel_k(0, scaled=True)
+        I0 = middle.bessel_i(0, scaled=True)
+        K1 = (1 / middle - middle.bessel_i(1, scaled=True) * K0) / I0
+        k = K0 / K1
     return k + arb(0, (z.rad() * k / z.lower()).abs_upper())
 
 
@@ -366,11 +375,11 @@ def zone_of(of: Material, z) -> Zone:
     return Zone(sum(shift), h, sum(m), (half_space, cylinder), X, i2)
 
 
-def _state(alpha, kappa, mu, V, delta):
+def _state(alpha, kappa, mu, V, delta, near):
     """The law at the working precision; None where that does not decide a sign."""
     of = material_of(alpha)
     w = 2 * kappa * V
-    zeta = _root(of, _H, 1 / w**2, 1 / w)
+    zeta = _root(of, _H, 1 / w**2, 1 / w, near.get("zeta"))
     if zeta is None:
         return None
     # so that a creep of exactly delta_star is seen as such
@@ -394,7 +403,8 @@ def _state(alpha, kappa, mu, V, delta):
     if delta == 0:
         return state | {"full_slip": False, "beta": arb(1), "Q": arb(0)}
     y = zeta + whole.g - delta / (mu * V)
-    eta = _root(of, _F, y, y)
+    start = near["beta"] * near["zeta"] if near.get("beta", 0) != 0 else None
+    eta = _root(of, _F, y, y, start)
     if eta is None:
         return None
     return state | {"full_slip": False, "beta": eta / zeta, "Q": mu * (1 - _H(of, eta) * w**2)}
@@ -408,14 +418,15 @@ def _H(of, z):
     return z * (z + 2 * zone_of(of, z).h)
 
 
-def _root(of, function, y, guess):
+def _root(of, function, y, guess, near):
     """A ball that holds the z > 0 at which F or H, which rise strictly, is y; None without the
     digits for it.
 
     Newton's iteration in logarithms, on midpoints, slopes by differences; then ever wider balls
-    until the ends lie on either side.  Without modes what is asked is the guess itself.
+    until the ends lie on either side.  Without modes what is asked is the guess itself; with
+    modes ``near``, if there is one, is nearer.
     """
-    z = guess.mid()
+    z = (guess if near is None else near).mid()
     if not y > 0:
         return None
     if not of.a:

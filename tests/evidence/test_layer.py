@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from many import assert_covers_are_each
 from places import DATA, DOCS
 
+import viscoroll as vr
 from pipeline.evidence.prove import layer
 from viscoroll.contact_mechanics.assumptions import THICK_LIMIT
 
@@ -39,3 +41,9 @@ def test_the_page_states_what_is_kept():
             assert close(layer.load(2.0 / (length * by), row["nu"]) * by**2, 1.0, tol.LAYER_KEPT)
     least = min(row["limit"] for row in ROWS)
     assert 0.95 * least <= THICK_LIMIT <= least
+
+
+def test_covers_that_relax_between_nodes():
+    """Laws interpolated over thickness are those of each; of elastic ones: test_covers.py."""
+    series = vr.Prony([10.0], [1.0])
+    assert_covers_are_each(vr.Cover(series, nu=0.3, thickness=[0.52, 0.6], on="base"))
