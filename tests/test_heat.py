@@ -176,6 +176,22 @@ def test_units_are_converted():
     }
     found = ROLLER.temperature(pint.Quantity(18.0, "km/h"), **given)
     assert close(found.temperature, ROLLER.temperature(5.0, **WARM).temperature, 1e-12)
+    pair = beside(temperature=60.0)
+    both = {"ambient": pint.Quantity([293.15] * 2, "K"), "conductance": [6.0] * 2}
+    assert close(
+        pair.pair_temperatures(5.0, **both).loss,
+        pair.pair_temperatures(5.0, **both | {"ambient": [20.0] * 2}).loss,
+        1e-9,
+    )
+    then = {"t": [60.0, 120.0], "capacity": 9e3}
+    speeds = vr.Schedule(pint.Quantity([0.0, 1.0], "min"), pint.Quantity([0.0, 18.0], "km/h"))
+    course = ROLLER.warming(speeds, **given, **then)
+    assert close(course.V, [5.0, 5.0], 1e-15)
+    assert close(
+        course.temperature,
+        ROLLER.warming(vr.Schedule([0.0, 60.0], [0.0, 5.0]), **WARM, **then).temperature,
+        1e-9,
+    )
     mass = {"ambient": 20.0, "conductance": pint.Quantity(6.0, "kg")}
     refused(lambda: ROLLER.temperature(5.0, **mass), "must be in W")
 
