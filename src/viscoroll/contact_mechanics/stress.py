@@ -347,8 +347,9 @@ def stress(
         ``p``: pressure, >= 0.  ``tau``: shear stress on the cylinder in the direction of +x, of the
         sign of omega R - V (at V = 0 of delta), 0 for delta = 0; |tau| <= mu p, with equality in
         the slip zone and, in full slip, in the whole contact.  Both are in Pa of a Cylinder, else
-        divided by E', and 0 outside the contact.  If a body is a layer of finite thickness there is
-        ``p`` alone by method "table": its shear stress is not known.  Both have the broadcast shape
+        divided by E', and 0 outside the contact.  Of a layer of finite thickness, and of
+        half-spaces of which :func:`contact` takes the coupled solution (Dundurs' constant above
+        0.05), method "table" gives ``p`` alone, that without shear.  Both have the broadcast shape
         of arguments and roller; they are floats if all of these are numbers.
 
     Raises
@@ -412,11 +413,12 @@ def _stress_of_law(
     x: distance ahead of the axis, divided by l0; broadcasts with the states.
     V: speeds, dimensionless, any sign.
     creep: omega if ``creep_is_omega``, else the creepage delta.
-    Returns p and tau divided by E', rows of an array, each of the broadcast shape; of a cover p
-    alone.
+    Returns p and tau divided by E', rows of an array, each of the broadcast shape; of a cover,
+    and of half-spaces whose traction is by the coupled solution, p alone.
     """
     from ..kernels.law.modes import Points
 
+    alone = scene.tabulated or scene.cover is not None
     scene = scene.uncoupled
     lam, epsilon, beta, zeta, delta = evaluate_contact(
         scene,
@@ -458,7 +460,7 @@ def _stress_of_law(
             tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, p.size, _BLOCK)
-    return out.reshape(2, *shape)[: 2 if scene.cover is None else 1]
+    return out.reshape(2, *shape)[: 1 if alone else 2]
 
 
 def _compute_stresses(
