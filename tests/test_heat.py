@@ -135,6 +135,8 @@ def test_vertical_shift_scales_the_moduli(base):
     assert close(hot.material.E / 3e6, (found.temperature[0] + 273.15) / 293.15, 1e-15)
     assert close(found.C_rr[0], hot.contact(3.0, delta=0.0).C_rr, 1e-12)
     assert balanced(found, **MILD)
+    limit = roller.heat_limit(found.temperature[0], V=3.0, **MILD)
+    assert close(limit.load, roller.load, 1e-6)
 
 
 def test_cover_follows_its_own_law():

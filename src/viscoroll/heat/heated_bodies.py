@@ -422,7 +422,7 @@ def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:
     return Solid(
         E=body.E * root_b**2,
         nu=body.nu,
-        prony=body.prony.slower(a_T),
+        prony=body.prony.slower(a_T.clip(1e-90, 1e90)),  # beyond, M is 0 and times are refused
         T_ref=body.T_ref,
         thickness=body.thickness,
     )
