@@ -77,9 +77,12 @@ BASE ?= HEAD
 same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 	$(RUN) -m pipeline.evidence.same --base $(BASE)
 
-# two processes of tests would compile the same kernels twice
-test: setup ## the test suite: what users meet
+# Two processes of tests would wait for each other's kernels.  The cache has them until a kernel changes.
+.venv/warm: .venv/dev $(shell find src/viscoroll/kernels -name '*.py' -o -name '*.npy')
 	$(BIN)/viscoroll warmup
+	touch $@
+
+test: setup .venv/warm ## the test suite: what users meet
 	$(BIN)/pytest -n 2 --dist worksteal --ignore tests/evidence $(TEST)
 
 evidence: setup ## tests of what a release rests on: pipeline stages at small sizes, clusters, results that are kept

@@ -2,17 +2,13 @@
 
 import os
 import re
+from contextlib import contextmanager
 
 # a thread of BLAS that waits for another spins: where cores are busy a fit of a master curve takes
 # ten times longer
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import pytest
-from memory import forget
-
-from viscoroll.contact_mechanics import model_warnings
-from viscoroll.measurements import spectrum
-from viscoroll.motion import flow
 
 # what a user chose for other work does not reach the tests
 os.environ.pop("VISCOROLL_THREADS", None)
@@ -45,7 +41,7 @@ def pytest_sessionfinish(session):
 @pytest.fixture(autouse=True)
 def nothing_said_yet(monkeypatch):
     """What is said of a material once a process is said in each test."""
-    monkeypatch.setattr(model_warnings, "_warned_records", set())
+    monkeypatch.setattr("viscoroll.contact_mechanics.model_warnings._warned_records", set())
 
 
 @pytest.fixture
@@ -58,23 +54,29 @@ def here(tmp_path, monkeypatch):
 @pytest.fixture
 def two_speeds(monkeypatch):
     """The accuracy of M by a fit is found at two speeds, not at two a decade of its data."""
-    monkeypatch.setattr(spectrum, "_SPEEDS", 0)
+    monkeypatch.setattr("viscoroll.measurements.spectrum._SPEEDS", 0)
+
+
+@contextmanager
+def maps_in(folder):
+    """Flow maps are written to and read from this folder alone."""
+    from memory import forget  # the process that hands tests out needs none of the package
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("viscoroll.motion.flow.folder", lambda: folder)
+        forget()
+        yield
+    forget()
 
 
 @pytest.fixture
-def own_maps(tmp_path, monkeypatch):
+def own_maps(tmp_path):
     """Flow maps of a test are its own; compiled kernels stay where they are."""
-    monkeypatch.setattr(flow, "folder", lambda: tmp_path / "maps")
-    forget()
-    yield
-    forget()
+    with maps_in(tmp_path / "maps"):
+        yield
 
 
 @pytest.fixture(scope="module")
 def maps_of_this_file(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        folder = tmp_path_factory.mktemp("maps")
-        patch.setattr(flow, "folder", lambda: folder)
-        forget()
+    with maps_in(tmp_path_factory.mktemp("maps")):
         yield
-    forget()

@@ -137,7 +137,7 @@ FORMATS = {
         vr.load_law,
     ),
     "law of every alpha": (
-        lambda path: vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path),
+        lambda path: vr.tables.save(vr.tables.law(alpha=(8.0, 16.0)), path),
         lambda path: vr.load_law(path, 11.0),
     ),
     "grid": (

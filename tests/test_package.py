@@ -32,14 +32,12 @@ def test_the_table_of_coefficients_ships_small():
 # --- imports ---
 
 
-def test_import_is_light():
+def test_imports_are_light():
+    """A contact imports no motions and no heat."""
     code = "vr.presets.PAPER_SECTION_5; vr.Scene(2, 2, 0.2); dir(vr); vr.law; vr.ParameterError"
     names = "print(*{name.split('.')[0] for name in sys.modules})"
-    loaded = printed(f"import sys, viscoroll as vr; {code}; {names}")
-    assert not set(HEAVY.split()) & set(loaded.split())
-
-
-def test_a_contact_imports_no_motions_and_no_heat():
     call = "vr.Scene(2, 2, 0.2).contact(1, delta=0); print(*sys.modules)"
-    loaded = printed(f"import sys, viscoroll as vr; {call}")
-    assert not re.search(r"viscoroll\.(motion|heat|tables|runs)", loaded)
+    loaded = printed(f"import sys, viscoroll as vr; {code}; {names}; {call}")
+    light, _, of_contact = loaded.partition("\n")
+    assert not set(HEAVY.split()) & set(light.split())
+    assert not re.search(r"viscoroll\.(motion|heat|tables|runs)", of_contact)

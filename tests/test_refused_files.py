@@ -86,7 +86,9 @@ REFUSED = [
             "given.nc | V = | shape (0,) | must be real numbers, at least one": OTHER_GRID.isel(
                 V=slice(0)
             ),
-            "given.nc: is not a grid of a law, since it has neither M": OTHER_GRID.drop_vars("M"),
+            "is not a grid of a law, since it has neither the variable M": OTHER_GRID.drop_vars(
+                "M"
+            ),
             "must have V(V), delta(delta), Q(V, delta)": OTHER_GRID.assign(
                 Q=OTHER_GRID.Q.isel(V=0)
             ),
@@ -246,6 +248,11 @@ REFUSED = [
     *files(
         run,
         {
+            "[base] base_E: material | table of pressure and shear | coupled = false in": (
+                "rubber on steel",
+                "coupled = false",
+                "",
+            ),
             "line 4: [scene] mu: unknown key 'distribtion'; did you mean 'distribution'?": (
                 "a preset",
                 'distribution = "lognorm"',
@@ -305,8 +312,8 @@ REFUSED = [
             "values: must be one for all cylinders (thickness, load and R may differ, and "
             "beside a rigid body E and nu": (
                 "on what is rigid",
-                "E = {",
-                "thickness = 0.1\nE = {",
+                "[material]",
+                "coupled = false\n[material]\nthickness = 0.1",
             ),
             "file.toml: line 10: [drive.brake] drive_brake_time_1: draws extend from "
             "5.55112e-17 to 1: brake | add truncate = [low, high]": (

@@ -5,8 +5,6 @@ dimensionless, a ``Cylinder`` in SI units.  Public names are imported at their f
 ``import viscoroll`` imports neither numba nor xarray nor matplotlib.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from importlib import import_module

@@ -6,8 +6,6 @@ start and [run].  :mod:`.core.files` refuses unknown keys and wrong types; the o
 section describes refuse values out of range.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -15,8 +15,6 @@ order, gets the same bits, and holds no other block in memory.
   are not drawn.
 """
 
-from __future__ import annotations
-
 import copy
 from functools import lru_cache
 from typing import Any, Literal, TypeAlias, get_args

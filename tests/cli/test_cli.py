@@ -86,12 +86,6 @@ def law(tmp_path_factory):
 # --- the program itself ---
 
 
-def told_by_shell(line):
-    """What the program gives on such a line of a shell."""
-    command = ["bash", "-c", f"{shlex.quote(sys.executable)} -m viscoroll {line}"]
-    return subprocess.run(command, check=False, capture_output=True, text=True)
-
-
 def test_help_imports_nothing_heavy():
     printed(
         f"""\
@@ -104,15 +98,12 @@ assert not heavy, heavy"""
     )
 
 
-SHOW = f"material show {shlex.quote(str(vr.datasets.path('rubber.toml')))}"
-
-
 @pytest.mark.parametrize(
     ("line", "code", "error"),
     [
-        (SHOW + " | true; exit ${PIPESTATUS[0]}", 141, ""),
-        (SHOW + " >/dev/full", 2, "viscoroll: error: standard output: No space left on device\n"),
-        (SHOW + " >&-", 0, ""),
+        ("samples . | true; exit ${PIPESTATUS[0]}", 141, ""),
+        ("samples . >/dev/full", 2, "viscoroll: error: standard output: No space left on device\n"),
+        ("samples . >&-", 0, ""),
         # an error that nobody hears is one
         ("contact 2>&-", 2, ""),
         ("contact 2>/dev/full", 2, ""),
@@ -120,13 +111,18 @@ SHOW = f"material show {shlex.quote(str(vr.datasets.path('rubber.toml')))}"
     ],
 )
 def test_output_that_nothing_takes(line, code, error):
-    done = told_by_shell(line)
+    command = ["bash", "-c", f"{shlex.quote(sys.executable)} -m viscoroll {line}"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (code, "", error)
 
 
 @pytest.mark.parametrize(
     ("raised", "code", "words"),
-    [(KeyboardInterrupt, 130, ""), (MemoryError, 2, "not enough memory")],
+    [
+        (KeyboardInterrupt, 130, ""),
+        (MemoryError, 2, "not enough memory"),
+        (ImportError, 2, "error"),
+    ],
 )
 def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
     def fail(*_, **__):
@@ -344,13 +340,16 @@ def files(here, law):
         (here / name).write_text(text)
 
 
-def test_refused(files, refuse):
-    for command, words in REFUSED.items():
-        said = refuse(command)
+def assert_said(tell, table):
+    """Each command says the words that the table has for it."""
+    for command, words in table.items():
+        said = tell(command)
         assert all(word in said for word in words.split(" | ")), (command, said)
+
+
+def test_refused(files, refuse):
+    assert_said(refuse, REFUSED)
 
 
 def test_shown(files, run):
-    for command, words in SHOWN.items():
-        said = run(command)
-        assert all(word in said for word in words.split(" | ")), (command, said)
+    assert_said(run, SHOWN)

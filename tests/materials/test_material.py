@@ -3,6 +3,7 @@ test_values_of_materials.py; shifts from any temperature: test_heat.py.
 """
 
 import dataclasses
+import warnings
 
 import numpy as np
 import pytest
@@ -139,7 +140,11 @@ def test_a_shift_is_not_stored_without_its_vertical_one(tmp_path):
     """A file cannot hold a function; ``at`` of the shift alone would give other moduli."""
     for vertical, shift in (("entropic", vr.WLF(T0=20.0)), (lambda T: 1.0 + 0.01 * T, None)):
         material = dataclasses.replace(STORED[0], shift=vr.WLF(T0=20.0), vertical_shift=vertical)
-        material.to_netcdf(tmp_path / "m.nc")
+        with warnings.catch_warnings(record=True, action="always") as said:
+            material.to_netcdf(tmp_path / "m.nc")
+        assert ["does not hold the shift" in str(one.message) for one in said] == [True] * (
+            shift is None
+        )
         (tmp_path / "m.toml").write_text(material_as_toml(material))
         for name in ("m.nc", "m.toml"):
             assert read_materials(tmp_path / name)["material"].shift == shift

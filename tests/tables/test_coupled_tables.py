@@ -213,7 +213,10 @@ def test_one_cover_takes_its_table_unless_asked_otherwise(scene):
 def test_many_covers_in_one_call_say_what_their_tables_would_take():
     one = scene_of(BELT)
     covers = one.replace(material=BELT.of_thickness([0.5, 0.6, 0.7]))
-    for many, words in ((covers, "needs 3 tables"), (one.replace(mu=[0.2, 0.3]), "needs 2 tables")):
+    for many, words in (
+        (covers, "material (with a thickness also"),
+        (one.replace(mu=[0.2, 0.3]), "mu has several values"),
+    ):
         refused(partial(many.contact, 0.1, delta=0.0), words, "coupled=False")
 
 

@@ -3,8 +3,6 @@ ranges, the scene, the output file; and the output of results, as a table on sta
 a complete file of a table or dataset.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from argparse import ArgumentTypeError, Namespace

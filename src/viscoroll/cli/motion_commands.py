@@ -6,8 +6,6 @@
 - ``viscoroll plot``: a figure of the content of a file.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import warnings

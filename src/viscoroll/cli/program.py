@@ -7,8 +7,6 @@ The exit codes are 0 success, 1 a check failed, 2 an error, printed in one line.
 - ``viscoroll doctor`` prints the contents of a problem report.
 """
 
-from __future__ import annotations
-
 import argparse
 import inspect
 import io

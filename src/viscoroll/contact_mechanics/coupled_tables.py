@@ -311,8 +311,6 @@ def measure_errors(
 
 #: files kept; the one that was used longest ago goes first
 _KEPT = 256
-#: seconds that a table takes on two cores, for messages
-SECONDS = 3
 #: arrays of :class:`CoupledRows` in a file
 _ARRAYS = "u", "t", "edges", "fields"
 _lock = threading.Lock()

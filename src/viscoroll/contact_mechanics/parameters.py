@@ -371,6 +371,19 @@ class Parameters(Roller):
         firsts = [self.replace(material=one) for one in self.material[:1]]
         return any(map(is_coupled, map(CoupledPair.of_scene, firsts)))
 
+    def refuse_several_tables(self) -> None:
+        """Raise ParameterError where states with traction would need a table for each of several
+        bodies or mu; nothing is made.
+        """
+        several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
+        if self.tabulated and self._law is None and several * np.unique(self.mu).size != 1:
+            raise described_error(
+                "material (with a thickness also R and load)" if several > 1 else "mu",
+                "has several values, each of which needs a table of pressure and shear",
+                "one value; or neglect their interaction, by coupled=False of the Cylinder (in a "
+                "file coupled = false in [cylinder])",
+            )
+
     @property
     def rolling_law(self) -> LawTable | None:
         """Return the law of states with traction: :attr:`table`, or where :attr:`tabulated` a table
@@ -382,22 +395,11 @@ class Parameters(Roller):
         if not self.tabulated or self._law is not None:
             return self.table
         from .coupled_pair import CoupledPair
-        from .coupled_tables import SECONDS, stored_rows
+        from .coupled_tables import stored_rows
 
-        mus = np.unique(self.mu)
-        several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
-        if several * mus.size != 1:
-            found = (
-                f"needs {several * mus.size} tables of pressure and shear solved together, each of "
-                f"which takes about {SECONDS} s on two cores"
-            )
-            allowed = (
-                "one material and one mu in a call; or give coupled=False for the fast law, "
-                "which needs no table"
-            )
-            raise described_error("material" if several > 1 else "mu", found, allowed)
+        self.refuse_several_tables()
         if self._made is None:
-            rows = stored_rows(CoupledPair.of_scene(self), float(mus[0]))
+            rows = stored_rows(CoupledPair.of_scene(self), float(np.ravel(self.mu)[0]))
             vars(self)["_made"] = coupled_table(self.material, rows)
         return self._made
 
@@ -546,8 +548,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            "the law of these bodies is a table of pressure and shear solved together: "
-            f"{why}, or give coupled=False for the fast law",
+            f"shear acts on the pressure of these bodies: {why}, or make the Cylinder with "
+            "coupled=False, which neglects that effect",
         )
 
 

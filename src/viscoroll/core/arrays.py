@@ -10,8 +10,6 @@ of numba: no second compilation, no threading layer that could clash with that o
 safe in forked processes and from several threads.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import threading

@@ -4,8 +4,6 @@ the labels of xarray and pandas.
 Labels are removed from the arguments of a call, with their units, and put on its results.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace

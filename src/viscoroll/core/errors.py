@@ -17,8 +17,6 @@ a key of a file, a heading of a column, or an argument of a public call (:func:`
 :func:`suggest_arguments`).
 """
 
-from __future__ import annotations
-
 import copyreg
 import inspect
 import sys

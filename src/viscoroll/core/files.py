@@ -7,8 +7,6 @@ package detects damage before a library parses the file.
 Sections of TOML files are checked for unknown keys and wrong types, with the number of the line.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import math

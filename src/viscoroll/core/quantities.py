@@ -13,8 +13,6 @@ Factors of conversion are those of pint, which is imported at the first conversi
 Values without a unit, and the labels of xarray and pandas, stay as they are.
 """
 
-from __future__ import annotations
-
 import csv
 import re
 from datetime import timedelta

@@ -2,8 +2,6 @@
 figures.
 """
 
-from __future__ import annotations
-
 import html
 from collections.abc import Iterable, Mapping
 from dataclasses import fields

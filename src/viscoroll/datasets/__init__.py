@@ -1,7 +1,5 @@
 """Sample files that are installed with the package, for the examples of the documentation."""
 
-from __future__ import annotations
-
 from os import PathLike
 from pathlib import Path
 

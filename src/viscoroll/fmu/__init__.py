@@ -13,8 +13,6 @@ fmu.c with the functions of the standard, their compiled library, and the descri
 from variables.csv, in the order of their value references, which start with 1.
 """
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import re
@@ -341,7 +339,8 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     Warns
     -----
     ModelWarning
-        Of a cover, unless the Cylinder has ``coupled=False``: the FMU has the law without a table.
+        Of a cover, and of a Cylinder on a half-space with Dundurs' constant above 0.05, unless the
+        Cylinder has ``coupled=False``: the FMU has the law without a table.
 
     Examples
     --------
@@ -410,23 +409,24 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
 
 
 def _warn_of_fast_law(given: Any, table: LawTable) -> None:
-    """Give a ModelWarning of a cover whose law is a table elsewhere: an FMU has the law without.
+    """Give a ModelWarning of bodies whose law is a table elsewhere: an FMU has the law without.
 
     given: argument of :func:`build`; a Cylinder with ``coupled=False`` gives no warning.
-    table: :class:`LawTable`, its law.
+    table: :class:`LawTable`, its law; without a Cylinder, half-spaces give no warning.
     The error that the warning states is the largest of six decades of speed, of a Cylinder.
     """
-    if table.cover is None:
-        return
     error = "validity(V).traction of a Cylinder states its error"
     if isinstance(given, Cylinder):
         if not given.body_data.scene.tabulated:
             return
         speeds = given.l0 / given.T_ref * np.logspace(-3.0, 3.0, 61)
-        error = given.replace(coupled=False).validity(speeds).traction.sentence
+        validity = given.replace(coupled=False).validity(speeds)
+        error = (validity.traction if table.cover else validity.bodies).sentence
+    elif table.cover is None:
+        return
     warn_of_model(
-        "the FMU has the fast law of a cover, as a Cylinder with coupled=False, in place of the "
-        f"solution of pressure and shear together: {error}"
+        "the FMU has the fast law, of a Cylinder with coupled=False, in place of the solution of "
+        f"pressure and shear together: {error}"
     )
 
 

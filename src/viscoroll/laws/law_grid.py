@@ -194,7 +194,8 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     if "M" not in names and not {"M_half_space", "M_cylinder"} <= set(names):
         raise FileError(
             path,
-            "is not a grid of a law, since it has neither M over V nor M_half_space and M_cylinder",
+            "is not a grid of a law, since it has neither the variable M (the rolling moment at "
+            "each V) nor both M_half_space and M_cylinder: add M, or rename the variable that is M",
         )
     for name in names:
         if not (table[name].size and table[name].dtype.kind in "iuf"):

@@ -9,8 +9,6 @@ of its series; it is written and read by ``to_netcdf`` and ``from_netcdf`` of
 :class:`viscoroll.Material`.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import shlex
@@ -25,7 +23,17 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from .. import __version__
-from ..core import PAPER, Dataset, FileError, FilePath, ParameterError, read_sealed, seal_matches
+from ..core import (
+    PAPER,
+    Dataset,
+    FileError,
+    FilePath,
+    ParameterError,
+    read_sealed,
+    seal_matches,
+    warn_of_model,
+    write_dataset,
+)
 from .measured_data import WLF, Arrhenius, Measured
 from .prony import Prony
 
@@ -357,6 +365,25 @@ def material_as_dataset(material: Any) -> Dataset:
             "shifts": "\n".join(f"{key} = {value}" for key, value in shifts.items()),
         },
     )
+
+
+def write_material(material: Any, path: FilePath) -> None:
+    """Write a material as netCDF-4, whole or not at all, sealed by a SHA-256.
+
+    material: a :class:`viscoroll.Material`.
+    path: file to write; a file of that name is replaced.
+    Raises FileError if it cannot be written there.  Warns with ModelWarning of shifts that the file
+    does not hold (:func:`shifts_as_toml`).
+    """
+    data = material_as_dataset(material)
+    shifts = (material.shift, material.vertical_shift)
+    if len(data.attrs["shifts"].splitlines()) < sum(shift is not None for shift in shifts):
+        warn_of_model(
+            f"{path} does not hold the shift with temperature: files hold WLF, Arrhenius and the "
+            'vertical shift "entropic" alone.  Fit one (ShiftFactors.wlf or .arrhenius), or give '
+            "the shift again after reading: dataclasses.replace(material, shift=...)"
+        )
+    write_dataset(data, path, sealed=True)
 
 
 def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:

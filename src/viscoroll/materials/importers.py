@@ -6,8 +6,6 @@ G(t) relaxes alike.  Where they are given and differ from those of shear, nu cha
 :func:`plane_strain` keeps what a contact in plane strain feels.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Self
 

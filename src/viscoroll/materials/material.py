@@ -539,7 +539,7 @@ class Material(FromPrograms):
 
     def to_netcdf(self, path: FilePath) -> None:
         """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed
-        by a SHA-256.
+        by a SHA-256.  It warns with ModelWarning of a shift that it leaves out: of a function.
 
         Parameters
         ----------
@@ -555,9 +555,9 @@ class Material(FromPrograms):
         >>> import viscoroll as vr
         >>> vr.Material.elastic(2.1e11, 0.3).to_netcdf("steel.nc")
         """
-        from ..core import write_dataset
+        from .checked_netcdf import write_material
 
-        write_dataset(self.to_xarray(), path, sealed=True)
+        write_material(self, path)
 
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Return storage and loss modulus divided by E, (E'/E, E''/E), (1, 0) of an elastic body.

@@ -2,8 +2,6 @@
 :class:`Material`.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib

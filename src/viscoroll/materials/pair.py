@@ -6,8 +6,6 @@ beta_D is 0 at all times.  Layers and half-spaces of one Poisson's ratio differ 
 :func:`layer_excess`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -300,7 +298,7 @@ class Pair:
         if type(law) is Bodies and law.poisson is None and self.most_coupled > limit:
             raise described_error(
                 "nu",
-                "has several values, of which each needs a table of pressure and shear together",
+                "has several values, each of which needs a table of pressure and shear",
                 "one number; or neglect their interaction, by coupled=False of the Cylinder (in a "
                 "file coupled = false in [cylinder])",
             )

@@ -8,8 +8,6 @@ they alternate: b_1 < a_1 < b_2 < ... < a_N.  The unknown is the distance of a z
 pole, so that the gaps a_i - b_j keep all digits; the strengths are products of gaps.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

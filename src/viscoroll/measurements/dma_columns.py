@@ -4,8 +4,6 @@ and their numbers.
 Names of columns in five languages, and the quantities that they mean, are read from headings.toml.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

@@ -2,8 +2,6 @@
 relaxation modulus over time (:func:`read_relaxation`).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

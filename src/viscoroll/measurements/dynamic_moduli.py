@@ -217,7 +217,7 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS)
         raise described_error(
             names[0],
             f"has {values[0].size} points in a curve",
-            f"at least {fewest} points in the curve of each temperature",
+            f"at least {fewest} points in each curve (at each temperature, if there are several)",
         )
     order = np.argsort(values[0], kind="stable")
     return kind(*(column[order] for column in values))

@@ -579,5 +579,8 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
         f"{strains[n]:.3g}"
     )
     return replace(
-        low, strain=np.full(low.omega.size, strain), source=f"{low.source}, {of}", **moduli
+        low,
+        strain=np.full(low.omega.size, strain),
+        source=f"{low.source}, {of}".removeprefix(", "),
+        **moduli,
     )

@@ -7,8 +7,6 @@ the public attributes, ``_problem`` (:class:`.least_squares.Problem`), ``_likeli
 Functions of the other report read the public attributes of a :class:`.fit_results.SeriesFit` alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -114,8 +112,9 @@ def _noise(fit: Any) -> Iterator[str]:
         points = 9.0 / allowed**2
         yield (
             f"the residuals of {name} are autocorrelated: neighbours correlate by {lag:.2f}, those "
-            f"of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); intervals are those of "
-            f"{points / noise.repeats:.0f} points in place of {points:.0f}, or {_INADEQUATE}"
+            f"of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); if this is noise, the "
+            f"intervals hold: they are already widened to those of {points / noise.repeats:.0f} "
+            f"points in place of {points:.0f}; otherwise {_INADEQUATE}: plot the residuals"
         )
 
 

@@ -1,7 +1,5 @@
 """Results of an identification: :class:`Identification`, and :class:`Prediction`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import cached_property
@@ -271,7 +269,7 @@ class Identification(Result):
         >>> import viscoroll as vr
         >>> drum = vr.Resistance(V=[0.5, 0.5], sigma=0.01)
         >>> result = vr.identify(
-        ...     vr.presets.RUBBER_CYLINDER, {"E": (1e6, 1e7), "T_ref": (0.1, 10.0)}, [drum]
+        ...     vr.presets.RUBBER_CYLINDER, {"E": (2e6, 4e6), "T_ref": (0.5, 2.0)}, [drum]
         ... )
         >>> [list(product.powers) for product in result.products()]
         [['E', 'T_ref']]

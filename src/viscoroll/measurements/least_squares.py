@@ -2,8 +2,6 @@
 minima of chi2.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence

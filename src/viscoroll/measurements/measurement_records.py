@@ -4,8 +4,6 @@
 A record without values is a plan: the fit then says how well it would determine the unknowns.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field

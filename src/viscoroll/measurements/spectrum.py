@@ -21,8 +21,6 @@ Speeds, moments and kappa are those of a :class:`viscoroll.Scene`: V in units of
 by P R.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import product

@@ -3,8 +3,6 @@
 storage, loss, tan delta and magnitude, with which a third is compared.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping

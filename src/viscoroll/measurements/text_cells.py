@@ -2,8 +2,6 @@
 or texts, and a heading of a column as its name, its unit and the base of its logarithms.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import re

@@ -3,8 +3,6 @@
 :func:`column_in_unit`).
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable, Collection

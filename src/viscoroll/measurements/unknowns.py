@@ -5,8 +5,6 @@ A material's modes count from its longest time; names of the half-space begin wi
 of a record end with its name, as V0:run.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace

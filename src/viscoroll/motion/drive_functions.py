@@ -5,8 +5,6 @@ T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref
 material.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple

@@ -18,8 +18,6 @@ Motions give V and delta at interpolation nodes; distance, angle and loss are in
 polynomials.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -5,8 +5,6 @@ alpha, the ``T_ref`` of any other material.  Speeds are divided by R/T_ref.  gam
 R).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

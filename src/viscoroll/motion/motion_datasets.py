@@ -375,9 +375,11 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 
     if isinstance(materials, Cover):
         layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
-        found = along(
-            "cover_thickness", materials.thickness, "thickness of the cover divided by l0", **layer
+        name = (
+            "thickness of the cover divided by l0, the contact length at rest of half-spaces under "
+            "the same load"
         )
+        found = along("cover_thickness", materials.thickness, name, **layer)
         nu = along("cover_nu", materials.nu, "Poisson's ratio of the cover")
         return found | nu if np.ndim(materials.nu) else found
     return (

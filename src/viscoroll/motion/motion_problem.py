@@ -5,8 +5,6 @@ T_ref is the unit of time of dimensionless motions: T_epsilon of a material that
 ``T_ref`` of any other material.  Speeds are divided by R/T_ref, angular velocities by 1/T_ref.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from typing import Any, NamedTuple
@@ -241,7 +239,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refuse_cover(scene, "leave unsteady=True out, as the added mass N is not computed")
+    refuse_cover(scene.uncoupled, "leave unsteady=True out, as the added mass N is not computed")
     if not scene.like_bodies:
         sentence = (
             "unsteady = True: motions with the added mass N are computed for two bodies of "

@@ -7,8 +7,6 @@ process nor a scheduler holds more than a few, however many blocks there are.
 :func:`estimate` states the time, memory and disk space that a run takes, by a short trial of it.
 """
 
-from __future__ import annotations
-
 import logging
 import re
 import sys

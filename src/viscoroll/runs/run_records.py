@@ -13,8 +13,6 @@ extend it.
 **Names**: long names and units of the columns of a store.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

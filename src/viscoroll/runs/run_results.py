@@ -3,8 +3,6 @@ result that prints itself and gives datasets, tables and figures (:func:`open_ru
 one netCDF-4 file (:func:`export_netcdf`).
 """
 
-from __future__ import annotations
-
 import math
 import os
 from dataclasses import dataclass

@@ -12,8 +12,6 @@ A block is a range of the motions of a run: :func:`block_inputs` draws its rando
 :func:`roll_block` makes the motions.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace

@@ -18,8 +18,6 @@ All numbers are dimensionless, or, with [cylinder] and perhaps [material] and [b
 All keys are in docs/ensembles.md.
 """
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -430,9 +428,10 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
             unsteady=settings.unsteady,
             rested=settings.rested,
         )
-        make_problem(
+        problem = make_problem(
             roller, start, drive=Drive(**drive_of(content)), end=run.t[-1], options=options
         )
+        problem.scene.refuse_several_tables()
     except (ParameterError, FileError) as error:
         return error
     return None

@@ -6,8 +6,6 @@ scrambled Sobol sequence; scipy.stats.sobol_indices, which has them too, fails f
 (SciPy 1.17).  The cost of a base point is one motion for every uncertain input and two more.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import msgspec

@@ -7,8 +7,6 @@ row that is drawn.  :class:`Inputs` gives the values of all inputs at such point
 of the run file with these values.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from contextlib import suppress

@@ -12,8 +12,6 @@ moment, N that of M + N dV/dt at slow speed changes, delta_star the creepage at 
 begins, and delta_0 that of free rolling, which is 0 but for a layer.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Export of laws and grids: netCDF, C, JSON, CSV, Modelica, MATLAB."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

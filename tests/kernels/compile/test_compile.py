@@ -9,15 +9,18 @@ import pickle
 import pwd
 import re
 import shutil
+import sys
 import threading
 import zlib
+from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
+import numba
+import numpy as np
 import pytest
 from filelock import FileLock
 from ordinary_user import NOBODY, as_ordinary_user, let_in
-from processes import python
 
 from viscoroll.kernels.numerics import cache_folder, deferred_compilation
 from viscoroll.kernels.numerics import jit as cache_module
@@ -99,20 +102,20 @@ def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("holder", "name"),
+    "name",
     [
-        ("numba.core.codegen", "JITCodeLibrary"),
-        ("numba.core.compiler_machinery", "register_pass"),
-        ("numba.core.typed_passes", "NativeLowering"),
+        "numba.core.codegen.JITCodeLibrary",
+        "numba.core.compiler_machinery.register_pass",
+        "numba.core.typed_passes.NativeLowering",
     ],
 )
-def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypatch, holder, name):
+def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypatch, name):
     # asked anew for these kernels alone: parts that others compiled before belong to the pipelines
     # that are kept
     monkeypatch.setattr(
         deferred_compilation, "_pipelines", deferred_compilation._pipelines.__wrapped__
     )
-    monkeypatch.delattr(f"{holder}.{name}")
+    monkeypatch.delattr(name)
     with pytest.warns(
         RuntimeWarning, match=r"does not compile cubed with what it calls \(.*one by one"
     ):
@@ -152,33 +155,27 @@ def assert_compiled(words):
 
 #: without a figure: the first kernel does not know how many follow it
 NOTICE = (
-    r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
+    r"viscoroll: compiling kernels, [^\d\n]*, once for this machine; "
+    r"`viscoroll warmup` does it ahead\n"
 )
 
 
-def test_settings_that_machine_code_follows_have_code_of_their_own(tmp_path):
-    """What one process compiled without checks is not what another one, that asks for them, is
-    given.  A process that compiles says so once."""
-    script = """
-import numpy as np
-from viscoroll.kernels.numerics.jit import kernel
+def third(array):
+    return array[2]
 
-@kernel
-def at(array, n):
-    return array[n]
 
-array = np.arange(10.0)
-print(kernel(lambda x: 2.0 * x)(50.0), end=" ")
-try:
-    print(at(array[:3], 4))
-except IndexError:
-    print("refused")
-"""
-    own = {"VISCOROLL_CACHE_DIR": str(tmp_path), "VISCOROLL_QUIET": ""}
-    for settings, said in (({}, "100.0 4.0\n"), ({"NUMBA_BOUNDSCHECK": "1"}, "100.0 refused\n")):
-        done = python("-c", script, **own, **settings)
-        assert done.stdout == said, (settings, done.stderr)
-        assert re.fullmatch(NOTICE, done.stderr), settings
+def test_settings_that_machine_code_follows_have_code_of_their_own(tmp_path, monkeypatch, capsys):
+    """What was compiled without checks is not what a process that asks for them is given.  A
+    process that compiles says so once."""
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("VISCOROLL_QUIET", "")
+    monkeypatch.setattr(cache_folder, "announced", False)
+    two = np.arange(4.0)[:2]
+    assert kernel(third)(two) == 2.0
+    monkeypatch.setattr(numba.config, "BOUNDSCHECK", 1)
+    with pytest.raises(IndexError):
+        kernel(third)(two)
+    assert re.fullmatch(NOTICE, capsys.readouterr().err)
 
 
 def sealed(content):
@@ -343,11 +340,9 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 # --- what is said ---
 
 
-def test_numba_switched_off_is_one_line():
+def test_numba_switched_off_is_refused(monkeypatch):
     """Vectors of four are machine code alone."""
-    rubber = "src/viscoroll/datasets/rubber.toml"
-    done = python(
-        "-m", "viscoroll", "contact", rubber, "--V", 0.5, "--delta", 0.01, NUMBA_DISABLE_JIT="1"
-    )
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert "NUMBA_DISABLE_JIT = 1: must be 0" in done.stderr
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", 1)
+    monkeypatch.delitem(sys.modules, cache_module.__name__)
+    with pytest.raises(ImportError, match="NUMBA_DISABLE_JIT = 1: must be 0"):
+        import_module(cache_module.__name__)

@@ -5,8 +5,6 @@ of contact states, stresses, equilibria, tables and motions.  Other figures are 
 :mod:`.result_figures`.
 """
 
-from __future__ import annotations
-
 import re
 from textwrap import fill
 from typing import Any

@@ -2,8 +2,6 @@
 (quantiles and final distribution of each quantity, and Sobol indices as bars).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

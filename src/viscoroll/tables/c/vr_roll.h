@@ -118,9 +118,10 @@ static inline int vr_roll(vr_roller *r, double time, double rtol) {
   if (!(vr_positive(r->kappa) && vr_positive(r->mu) && vr_positive(r->gamma))) return VR_REFUSED;
   if (!(vr_positive(r->j) && r->rest >= 0.0 && vr_finite(r->force) && vr_finite(r->torque))) return VR_REFUSED;
   if (!(vr_finite(r->V) && vr_finite(r->slip) && vr_finite(r->x) && vr_finite(r->step))) return VR_REFUSED;
-  if (r->rest == 0.0) r->rest = 1e-9 * fmax(fabs(r->V) + fabs(r->slip),
-                                            r->gamma * (fabs(r->force) + fabs(r->torque)) * time) + 1e-300;
-  if (!vr_finite(r->rest)) return VR_REFUSED;
+  double rest = r->rest > 0.0 ? r->rest : 1e-9 * fmax(fabs(r->V) + fabs(r->slip),
+                                                      r->gamma * (fabs(r->force) + fabs(r->torque)) * time) + 1e-300;
+  if (!vr_finite(rest)) return VR_REFUSED;
+  r->rest = rest;
   while (t < time) {
     if (r->force == 0.0 && r->torque == 0.0 && fabs(r->V) + fabs(r->slip) <= 1e-3 * r->rest) {
       r->V = r->slip = 0.0; /* at rest, where nothing drives it */
