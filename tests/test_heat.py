@@ -135,11 +135,15 @@ def test_vertical_shift_scales_the_moduli(base):
     assert close(hot.material.E / 3e6, (found.temperature[0] + 273.15) / 293.15, 1e-15)
     assert close(found.C_rr[0], hot.contact(3.0, delta=0.0).C_rr, 1e-12)
     assert balanced(found, **MILD)
+    limit = roller.heat_limit(found.temperature[0], V=3.0, **MILD)
+    assert close(limit.load, roller.load, 1e-6)
 
 
 def test_cover_follows_its_own_law():
-    """Free rolling of a cover is steady rolling without torque, whose loss is in balance."""
-    cover = ROLLER.replace(material=dataclasses.replace(RUBBER, thickness=0.03))
+    """Free rolling of a cover is steady rolling without torque, whose loss is in balance, by the
+    coupled solution.
+    """
+    cover = ROLLER.replace(material=dataclasses.replace(RUBBER, thickness=0.03), coupled=None)
     found = cover.temperature(2.0, **MILD)
     at = cover.replace(material=cover.material.at(float(found.temperature[0])))
     rolling = at.steady(V=2.0, torque=0.0)
@@ -174,6 +178,22 @@ def test_units_are_converted():
     }
     found = ROLLER.temperature(pint.Quantity(18.0, "km/h"), **given)
     assert close(found.temperature, ROLLER.temperature(5.0, **WARM).temperature, 1e-12)
+    pair = beside(temperature=60.0)
+    both = {"ambient": pint.Quantity([293.15] * 2, "K"), "conductance": [6.0] * 2}
+    assert close(
+        pair.pair_temperatures(5.0, **both).loss,
+        pair.pair_temperatures(5.0, **both | {"ambient": [20.0] * 2}).loss,
+        1e-9,
+    )
+    then = {"t": [60.0, 120.0], "capacity": 9e3}
+    speeds = vr.Schedule(pint.Quantity([0.0, 1.0], "min"), pint.Quantity([0.0, 18.0], "km/h"))
+    course = ROLLER.warming(speeds, **given, **then)
+    assert close(course.V, [5.0, 5.0], 1e-15)
+    assert close(
+        course.temperature,
+        ROLLER.warming(vr.Schedule([0.0, 60.0], [0.0, 5.0]), **WARM, **then).temperature,
+        1e-9,
+    )
     mass = {"ambient": 20.0, "conductance": pint.Quantity(6.0, "kg")}
     refused(lambda: ROLLER.temperature(5.0, **mass), "must be in W")
 

@@ -216,8 +216,6 @@ def test_tractions_carry_load_and_creep_force():
     assert (abs(found.tau) <= MU * found.p * (1.0 + tol.COUPLED_STRESS)).all()
     back = scene.stress(-x[9000], -0.1, delta=0.01, method="coupled")
     assert (back.p, back.tau) == (found.p[9000], -found.tau[9000])
-    pair = vr.Bodies(ONE, vr.Prony.elastic(), share=1.0, poisson=(0.3, 0.3))
-    assert "tau" not in scene.replace(material=pair).stress(x, 0.1, delta=0.01)
 
 
 def test_depth_is_that_of_the_surface_in_the_middle():

@@ -181,6 +181,12 @@ def test_unlike_half_spaces_have_a_table():
     found, truth = (scene.contact(**states, method=way) for way in ("table", "coupled"))
     assert close(found.Q, truth.Q, tol.TABLE_Q, scale=0.3)
     assert close(4.0 * found.M, 4.0 * truth.M, tol.TABLE_M, scale=1.0)
+    assert list(scene.stress(0.0, 0.1, delta=0.02).keys()) == ["p"]
+    V, delta = [0.1, 1.0], [-0.02, 0.0, 0.02]
+    grid = tables.build(scene, V, delta=delta)
+    found = scene.contact(np.transpose([V]), delta=delta)
+    assert np.array_equal(grid.M, found.M)
+    assert np.array_equal(grid.delta_0, found.delta_0[:, 0])
 
 
 def test_speeds_beyond_the_nodes_join_the_elastic_limits(scene):

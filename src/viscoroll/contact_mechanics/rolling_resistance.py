@@ -136,7 +136,9 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
 
     They bound the loads under which it can roll steadily: M rises from 0 and falls to 0 again.  For
     one relaxation time it is Eq. (16) of Zobova and Goryacheva (2020), with one maximum; widely
-    separated times give several.
+    separated times give several.  Of layers, and of half-spaces with Dundurs' constant above 0.05,
+    M is that of the fast law without creep force, also where :func:`contact` takes the coupled
+    solution.
 
     Parameters
     ----------

@@ -586,6 +586,7 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
     scale: units of the roller, for quantities with a unit.
     Raises ParameterError for a Schedule of several motions, and values that are no finite number.
     """
+    V = strip_labels({"V": V}, scale)[0]["V"]
     if isinstance(V, Schedule):
         if V.values.ndim > 1 or V.times.ndim > 1:
             raise shape_error("V", V.values.shape, "a Schedule of one motion")
@@ -593,5 +594,5 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
         return lambda time: float(np.interp(time, V.times, V.values)), V.times
     if callable(V):
         return lambda time: check_number(f"V({time:g})", V(time), unit="m s-1"), np.empty(0)
-    speed = check_number("V", V, unit=scale)
+    speed = check_number("V", V)
     return lambda time: speed, np.empty(0)

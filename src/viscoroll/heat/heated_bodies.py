@@ -266,7 +266,8 @@ class HeatStates:
     """States of a call, flattened to vectors of one length (n,), and the one body that is heated.
 
     roller : the cylinder, on its slope.
-    law : the law of all states at the reference, or the materials of which each state has one.
+    law : the law of all states at the reference, under ``loads`` that with traction (as ``steady``
+        has it), or the materials of which each state has one.
     loads : dimensionless, beside V: force or torque; None: half-spaces that roll freely.
     body, curve : the body and its shift.
     remade : whether the shape of the law changes with temperature: a vertical shift beside an
@@ -421,7 +422,7 @@ def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:
     return Solid(
         E=body.E * root_b**2,
         nu=body.nu,
-        prony=body.prony.slower(a_T),
+        prony=body.prony.slower(a_T.clip(1e-90, 1e90)),  # beyond, M is 0 and times are refused
         T_ref=body.T_ref,
         thickness=body.thickness,
     )
@@ -536,7 +537,7 @@ def heat_states(
         loads = loads_of(scene, force, torque=torque, slope=driven["slope"], V=np.ones(shape))
     return HeatStates(
         roller,
-        scene.table or several,
+        (scene.table if loads is None else scene.rolling_law) or several,
         loads,
         body,
         curve,

@@ -534,8 +534,8 @@ def pair_temperatures(
             "a Cylinder of Materials without thickness, and without arrays",
         )
     speed = abs(check_number("V", V, unit=scale))
-    around = check_array("ambient", ambient)
-    off = check_array("conductance", conductance, above=0.0)
+    around = check_array("ambient", ambient, unit="degC")
+    off = check_array("conductance", conductance, unit="W m-1 K-1", above=0.0)
     for name, array in (("ambient", around), ("conductance", off)):
         if array.shape != (2,):
             raise shape_error(name, array.shape, "two numbers, of cylinder and base")

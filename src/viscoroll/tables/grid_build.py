@@ -472,15 +472,15 @@ def _evaluate_nodes(
 
     Returns field -> values in the units of the roller: "beta" and "Q" of shape (V, delta) or (V,
     delta, alpha); lam, epsilon, M, M_half_space, M_cylinder, delta_star, zeta and, of a layer,
-    delta_0, (V,) or (V, alpha) where they do not depend on the creepage: of a layer delta_star and
-    delta_0 alone.
+    delta_0, (V,) or (V, alpha) where they do not depend on the creepage: of a layer, and of
+    half-spaces by the coupled solution, delta_star and delta_0 alone.
     Raises as :func:`_evaluate`.
     """
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
     scene = roller.scene() if isinstance(roller, Cylinder) else roller
-    of_traction = () if scene.cover is None else OF_TRACTION
-    # delta_0 is 0 without a cover
+    of_traction = OF_TRACTION if scene.cover is not None or scene.tabulated else ()
+    # delta_0 is 0 of half-spaces whose pressure and shear are uncoupled
     names = tuple(name for name in PLANE if name not in (of_traction or ("delta_0",)))
     fields = _evaluate(roller, plane, names, method)
     volume = _evaluate(roller, grid, (*VOLUME, *of_traction), method)

@@ -49,11 +49,13 @@ KIND = "viscoroll_table"
 GRID = "grid"
 #: What a user can do about a file that is not as it was written.
 _REBUILD = "write the file again by vr.tables.save or `viscoroll tables`"
-#: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
+#: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer
+#: and of the coupled solution alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
 VOLUME = ("beta", "Q")
-#: Fields over V that of a layer are over V and delta: there they depend on the traction.
+#: Fields over V that of a layer, and by the coupled solution, are over V and delta: they depend on
+#: the traction there.
 OF_TRACTION = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "zeta")
 
 
