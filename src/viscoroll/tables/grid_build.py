@@ -37,7 +37,6 @@ from ..core import (
     check_number,
     describe_value,
     described_error,
-    shape_error,
 )
 from ..laws import LawTable, bodies_as_toml, law_as_dataset, parse_law
 from ..materials import HIGHEST_ALPHA, dataset_content
@@ -195,7 +194,11 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
             "a Scene, a Cylinder or the law of half-spaces; if a body is a layer, the Cylinder",
         )
     if shape := (what if isinstance(what, Scene) else what.scene()).shape:
-        raise shape_error("what", shape, "a Scene or Cylinder without arrays as parameters")
+        raise described_error(
+            "what, the roller,",
+            f"has arrays of shape {shape} as parameters",
+            "a Scene or Cylinder whose parameters are numbers: make a grid for each",
+        )
     if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
         raise described_error(
             "alpha", "is given", "left out beside a Cylinder or a material, which determines it"
