@@ -362,7 +362,8 @@ def law(arguments: Namespace) -> None:
 
     .nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
     or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
-    every alpha of a range.  For a cover it is the fast law (coupled = false); `tables grid` writes the coupled solution.
+    every alpha of a range.  For a cover, and for half-spaces with Dundurs' constant above 0.05, it is the fast law
+(coupled = false); `tables grid` writes the coupled solution.
 
     example:
       viscoroll samples
@@ -404,7 +405,7 @@ def law(arguments: Namespace) -> None:
         "--method",
         default="table",
         help="table (default): the law of the scene; direct: numerical solution "
-        "of the equations in each node",
+        "of the equations in each node, for half-spaces of one relaxation time",
     ),
     output(*_GRID),
 )
@@ -413,6 +414,7 @@ def build(arguments: Namespace) -> None:
 
     The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
     .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.
+    For half-spaces with Dundurs' constant above 0.05 write coupled = false in [cylinder].
 
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
@@ -562,7 +564,7 @@ def fmu(arguments: Namespace) -> None:
     """Build an FMU of a cylinder, for Modelica tools and others.
 
     The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
-    For a cover it is the fast law, as with coupled = false.
+    For a cover, and for half-spaces with Dundurs' constant above 0.05, it is the fast law, as with coupled = false.
     Roller: inputs drive force and torque, outputs v, slip, omega, x; for co-simulation and model exchange.
     ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
     Both provide directional derivatives, which are exact except over the load of a cover.

@@ -222,6 +222,7 @@ def steady(arguments: Namespace) -> None:
 
     Each row is a steady speed under one of the loads.  If a load has no steady speed, the reason is printed.
     Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
+    The slope of a cover is a single number.
 
     example:
       viscoroll steady paper-section-5-rounded --slope 0:0.1:6
@@ -277,7 +278,9 @@ def heat(arguments: Namespace) -> None:
     """Find the temperatures at which a cylinder runs.
 
     Each row is a temperature at which rolling loss and heat given off are equal; unstable ones lie between stable ones.
-    The file needs [cylinder], and [material] the key wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
+    The file needs [cylinder], and the section of the body that relaxes needs the key wlf or arrhenius.  If both bodies
+    relax, they must be of one material.  Options are written as the numbers of `viscoroll contact`; the slope of a cover
+    is a single number.
 
     example:
       viscoroll samples
