@@ -31,7 +31,7 @@ from .arguments import FIGURES, FILE, SCENE, command, numbers, option, output, r
 def show(arguments: Namespace) -> None:
     """Print moduli, relaxation modes and creep modes of the materials of a file.
 
-    The values are those at the temperature that the file states.
+    The values are those at the temperature that the file states, if it states one.
 
     example:
       viscoroll samples
@@ -493,9 +493,10 @@ def info(arguments: Namespace) -> None:
 def validate(arguments: Namespace) -> int:
     """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
-    The law of a cover is compared with solutions of the contact.  The exit code is 1 if an error is larger than twice
-    the error that the file states (eight times for a table of the coupled solution).  For a grid it is also 1 if an
-    error is larger than half of the largest value of its quantity, or if a node differs from the law by more than 1e-12.
+    A grid of `tables build` must be that of a scene with alpha.  The law of a cover is compared with solutions of the
+    contact.  The exit code is 1 if an error is larger than twice the error that the file states (eight times for a
+    table of the coupled solution).  For a grid it is also 1 if an error is larger than half of the largest value of its
+    quantity, or if a node differs from the law by more than 1e-12.
 
     example:
       viscoroll samples

@@ -92,7 +92,8 @@ class RunSection(msgspec.Struct, frozen=True):
     sequence.
     method : "flow" reads the motions from a flow map, for which start speeds alone may be
     uncertain, without [drive] and unsteady; "integrate" integrates each motion; "auto" takes
-    "flow" for at least 4096 motions where these conditions hold.
+    "flow" for at least 4096 motions where these conditions hold.  A flow map is for half-spaces of
+    one material: with a cover or two materials write "integrate".
     rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
     rest : speed, dimensionless; with [cylinder] in m/s.  A motion ends at rest where |V| and
     R |omega| are below it and nothing drives any more.  Default: no such end.
