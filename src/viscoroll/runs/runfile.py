@@ -90,14 +90,16 @@ class RunSection(msgspec.Struct, frozen=True):
     sequence.
     method : "flow" reads the motions from a flow map, for which start speeds alone may be
     uncertain, without [drive] and unsteady; "integrate" integrates each motion; "auto" takes
-    "flow" for at least 4096 motions where these conditions hold.
+    "flow" for at least 4096 motions where these conditions hold.  A flow map is for half-spaces of
+    one material: with a cover or two materials write "integrate".
     rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
     rest : speed, dimensionless; with [cylinder] in m/s.  A motion ends at rest where |V| and
     R |omega| are below it and nothing drives any more.  Default: no such end.
     unsteady : whether the moment contains N dV/dt, the effect of slow changes of the speed (N is
-    the added mass).
+    the added mass).  It is allowed for half-spaces of one material only.
     rested : whether the cylinder stood still for long before the start; a number is the time for
-    which it stood still, with [cylinder] in s.
+    which it stood still, with [cylinder] in s.  It is refused for covers, for half-spaces with
+    Dundurs' constant above 0.05 unless ``coupled`` is false, and for a start in full slip.
     block : number of motions that are computed together; default: 128 MiB of motions, at most 65536
     (1048576 from a flow map).
     keep : "summaries" stores statistics alone, "all" also every motion with its inputs.
