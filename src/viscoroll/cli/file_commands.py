@@ -548,9 +548,9 @@ def export(arguments: Namespace) -> None:
     option(
         "file",
         metavar="MATERIAL_OR_LAW",
-        help="TOML file with [material], perhaps [base], and perhaps [cylinder], whose numbers are "
-        "the start values; the "
-        "file of `viscoroll tables law`; the netCDF of a material; or the name of a preset",
+        help="TOML file with [material], perhaps [base], and perhaps [cylinder], whose R, m, mu, "
+        "j and load become default values of the FMU; the file of `viscoroll tables law`; the "
+        "netCDF of a material; or the name of a preset",
     ),
     option("--model", default="Roller", help="Roller (default) or ContactElement"),
     option("--fmi", type=int, default=2, help="version of the FMI standard: 2 (default) or 3"),

@@ -246,7 +246,9 @@ def steady(arguments: Namespace) -> None:
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
         further = len(lines) - _MOST_LINES
-        lines[_MOST_LINES:] = [f"{further} further loads (counted from 0) have no steady speed"]
+        lines[_MOST_LINES:] = [
+            f"no steady speed for {further} more of the loads, of which the first is load 0"
+        ]
     if (
         arguments.output is not None or arguments.format != "text"
     ):  # a table for programs has no heading

@@ -356,7 +356,9 @@ class _Layout:
             if not row.numeric:
                 advice = "remove it, or begin it with #"
                 if self.footers:
-                    advice += "; write the temperature of the rows below as 'Temperature 20 °C'"
+                    advice += (
+                        "; if it is the temperature of the rows below, write 'Temperature 20 °C'"
+                    )
                 raise self.fault(row, f"is not a row of numbers: {advice}")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
