@@ -84,3 +84,12 @@ def test_what_was_measured_stays_with_the_material():
     poor = vr.Cylinder(R=0.1, m=30.0, material=rubber, mu=0.5).validity(0.1).measured
     assert not poor.holds
     assert "25 points" in poor.sentence
+
+
+def test_a_law_warns_of_speeds_beyond_shear_waves_of_every_kind():
+    """Integrators give numbers of numpy."""
+    roller = vr.presets.RUBBER_CYLINDER
+    law = roller.law()
+    for V in (100.0, np.float64(100.0)):
+        with pytest.warns(vr.ModelWarning, match="shear wave"):
+            assert law(V, V / roller.R).Q == 0.0

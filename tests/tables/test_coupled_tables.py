@@ -210,6 +210,15 @@ def test_one_cover_takes_its_table_unless_asked_otherwise(scene):
     assert abs(own.contact(**states).Q - own.uncoupled.contact(**states).Q).max() > 1e-3
 
 
+def test_delta_star_is_half_the_distance_of_the_onsets(scene):
+    """On either side of free rolling, as the solver has it; their distances from it differ."""
+    names = "delta_star", "delta_minus", "delta_plus", "delta_0"
+    found = scene.contact(0.1, delta=[-0.03, 0.03], fields=names)
+    assert np.array_equal(found.delta_star, 0.5 * (found.delta_plus - found.delta_minus))
+    assert abs(found.delta_star - (found.delta_plus - found.delta_0)).max() > 1e-3
+    refused(lambda: scene.contact(0.1, delta=0.0, fields="N"), "coupled pairs and grids")
+
+
 def test_many_covers_in_one_call_say_what_their_tables_would_take():
     one = scene_of(BELT)
     covers = one.replace(material=BELT.of_thickness([0.5, 0.6, 0.7]))

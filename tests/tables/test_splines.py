@@ -4,12 +4,14 @@ and C.
 
 import ctypes
 import pickle
+from functools import partial
 
 import numba
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll import tables
@@ -138,3 +140,19 @@ def test_a_grid_of_another_program(tmp_path):
     assert close(found.M, truth.M, tol.COARSE_GRID, scale=moment)
     size = moment / abs(speeds)
     assert close(found.dQ_domega, truth.dQ_domega, tol.COARSE_GRID_SLOPE, scale=size)
+
+
+def test_a_grid_has_no_onset_and_no_stick_zone(tmp_path):
+    """The ends of its axis of delta are none; shapes and kinds are those of any law."""
+    nodes = tables.spread(1e-3, 2.0, 9, "log")
+    own = tables.build(SCENE, nodes, delta=tables.creep_nodes(SCENE, nodes, 21))
+    tables.save(own, tmp_path / "own.nc")
+    read = vr.load_law(tmp_path / "own.nc")
+    roller = SCENE.replace(alpha=None, material=read)
+    assert list(roller.contact(1.0, delta=0.0).keys()) == ["delta", "Q", "M", "delta_0"]
+    for name in ("delta_star", "delta_minus", "delta_plus", "full_slip"):
+        refused(partial(roller.contact, 1.0, delta=0.0, fields=name), "a grid contains only Q")
+    assert np.isnan(roller.steady(V=0.5, torque=0.0).beta).all()
+    law = vr.law(read)
+    refused(lambda: law([1.0, 1.1], [1.0, 1.1, 1.2]), "V (2,), omega (3,) do not fit together")
+    assert isinstance(law(np.int64(1), np.int64(1)).Q, float)

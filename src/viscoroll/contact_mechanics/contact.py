@@ -20,6 +20,7 @@ from ..core import (
     Numbers,
     ParameterError,
     Values,
+    broadcast_shape,
     check_array,
     check_array_extent,
     check_bool,
@@ -502,17 +503,17 @@ class _LawOfGrid(Law):
 
         V, omega: speeds in the units of the grid, of any shapes that broadcast.
         kind: class of the result, :class:`Loads`, without slopes, or :class:`LoadsAndSlopes`.
-        Returns a ``kind`` of arrays of the broadcast shape, which is () for numbers; empty ones for
+        Returns a ``kind`` of arrays of the broadcast shape, of numbers for numbers; empty ones for
         empty input.
         Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or
-        infinite input, and ValueError of numpy for shapes that do not broadcast.
+        infinite input, and for shapes that do not broadcast.
         """
         evaluate = np.vectorize(
             lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 10
         )
-        return kind(
-            *evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)]
-        )
+        V, omega = check_array("V", V), check_array("omega", omega)
+        broadcast_shape(V=V, omega=omega)
+        return kind(*(each[()] for each in evaluate(V, omega)[: len(kind._fields)]))
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
         """Raise OutOfTableError for a state that the splines found to be outside; V, omega: in

@@ -76,7 +76,7 @@ DEPTH = "depth"
 #: Creepages at which full slip begins: default fields of method "coupled".
 ONSETS = ("delta_minus", "delta_plus")
 #: Fields that the law of a grid of another program does not have.
-NOT_IN_GRIDS = ("beta", "epsilon", "lam", "length", "zeta")
+NOT_IN_GRIDS = ("beta", "epsilon", "lam", "length", "zeta", "full_slip", "delta_star", *ONSETS)
 #: Fields that method "coupled" alone has, with the default ones first.
 OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
 #: Accuracy of M by the data of the materials, of a cylinder in SI units alone.
@@ -320,7 +320,11 @@ def evaluate_contact(
         if not material.coupled.graded:
             refuse_fields(NOT_IN_GRIDS, names, "left out: a grid contains only Q and M")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
-    computed = computed_fields(names, unlike)
+    # of a table the kernel writes the distance of one onset from delta_0 in place of half the width
+    halved = (
+        "delta_star" in names and isinstance(material, LawTable) and material.coupled is not None
+    )
+    computed = computed_fields(names + ONSETS * halved, unlike)
     rows = evaluate_law(
         material,
         [*arrays.values()],
@@ -329,6 +333,9 @@ def evaluate_contact(
         names=computed,
         direct=direct,
     )
+    if halved:
+        star, low, high = (computed.index(name) for name in ("delta_star", *ONSETS))
+        rows[star] = 0.5 * (rows[high] - rows[low])
     return complete(names, computed, rows, shape)
 
 

@@ -138,7 +138,7 @@ def warn_of_contact(
     if not motion:
         waves = data.wave_speed
         # speeds have signs: the lowest may be the fastest
-        too_fast = waves is not None and (ends[1] > waves or -ends[0] > waves)
+        too_fast = waves is not None and bool(ends[1] > waves or -ends[0] > waves)
         _warn_of_faults(
             [NOT_SMALL] * (not data.small_at_rest)
             + _absurd_sizes(data)

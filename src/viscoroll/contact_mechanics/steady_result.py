@@ -260,7 +260,7 @@ class Steady(Equilibria):
         its limit V -> 0+.
     Q, M : creep force and rolling resistance moment, divided by P and P R.
     M_half_space, M_cylinder : the parts of M by the losses in either body.
-    beta : stick zone divided by contact length, 0 in full slip.
+    beta : stick zone divided by contact length, 0 in full slip, NaN of a grid.
     grip : friction reserve 1 - |Q|/(mu P), 0 in full slip.
     stable : whether (V, omega) returns after any small disturbance at constant force and torque:
         both eigenvalues have a real part < 0.  A drive that prescribes V holds an unstable one too.

@@ -303,12 +303,14 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     contacts : the law, at a kappa and a mu.
     V, delta : speeds, > 0, which is not checked, and creepages, (n,), dimensionless.
     Returns rows of :class:`Field` with slopes, (12, n).  In full slip Q is mu or -mu, and beta and
-    the slopes of Q are 0.
+    the slopes of Q are 0.  beta is NaN of a grid, which does not contain it.
     """
     rows = np.empty((_COUNT, V.size))
     rows[Field.V] = V
     rows[Field.DELTA] = delta
     rows[2:] = contacts.fields(V, delta, *_ROWS)
+    if contacts.law.coupled is not None and not contacts.law.coupled.graded:
+        rows[Field.BETA] = np.nan
     speed = V
     if np.minimum.reduce(V, initial=_LEAST_SPEED) < _LEAST_SPEED:
         speed = np.maximum(V, _LEAST_SPEED)

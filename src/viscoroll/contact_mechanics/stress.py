@@ -410,7 +410,11 @@ def stress(
     stresses = find(scene, x=position, V=speed, creep=creep, creep_is_omega=by_omega)
     stresses *= scale["p"]  # in place: a copy would double the memory of a large call
     found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
-    return Values(found, given, si=scale.si, title="Stresses", labels=labels)
+    place = "place along the contact, from the point below the axis" + ", divided by l0" * (
+        not scale.si
+    )
+    own = {"x": {"long_name": place, "equation": "Eq. (11)"}}
+    return Values(found, given, own, "Stresses", si=scale.si, labels=labels)
 
 
 def _stress_of_law(

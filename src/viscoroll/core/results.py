@@ -239,7 +239,7 @@ class Values(Result):
     ----------
     values : name -> result.
     given : name -> argument, broadcast with the results.
-    units : name -> unit, where the table of dimensions does not have it.
+    own : name -> attributes in the dataset, in place of those of the quantity of that name.
     title : title of summary, dataset and figure.
     si : whether quantities with a dimension are in SI units.
     labels : labels of the arguments.
@@ -270,7 +270,7 @@ class Values(Result):
         self,
         values: dict[str, Any],
         given: dict[str, Any] | None = None,
-        units: dict[str, str] | None = None,
+        own: dict[str, dict[str, str]] | None = None,
         title: str = "Contact",
         *,
         si: bool = False,
@@ -282,8 +282,8 @@ class Values(Result):
         values: name -> number or array of the field.
         given: name -> argument by which the call varied, a number or an array that broadcasts with
             the fields, which becomes a coordinate.  None: there is none.
-        units: name -> unit as "m s-1", where it is not that of the field's name.  None: no field
-            has such a unit.
+        own: name -> attributes, as {"long_name": ...}, in place of those of the quantity of that
+            name.  None: all have those of their names.
         title: first line of the summary, title of dataset and figure.
         si: whether values are in SI units, else dimensionless.
         labels: :class:`.drives_and_labels.Labels` of the caller's arrays, put onto the fields of
@@ -297,7 +297,7 @@ class Values(Result):
             else {name: labels.apply(name, each) for name, each in values.items()}
         )
         self._given = given or {}
-        self._units = units or {}
+        self._own = own or {}
         self._labels = labels
         self._title = title + ", in SI units" * si
         self._si = si
@@ -415,10 +415,9 @@ class Values(Result):
 
     def _attributes(self, name: str) -> dict[str, Any]:
         """Return the attributes of the result or argument ``name``, as in
-        :func:`.scale.attributes`; a unit that the call gave for it takes the place of its own.
+        :func:`.scale.attributes`; those that the call gave for it take the place of its own.
         """
-        found = dict(attributes(name, self._si))
-        return found | {"units": self._units[name]} if name in self._units else found
+        return attributes(name, self._si) | self._own.get(name, {})
 
 
 def _name_axes(

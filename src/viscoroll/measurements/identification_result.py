@@ -400,9 +400,9 @@ class Identification(Result):
             for name, row in zip(record.QUANTITIES, rows)
         }
         coordinates = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
-        units = {name: record.unit(name.split("_")[0]) for name in (*found, *coordinates)}
+        own = {name: {"units": record.unit(name.split("_")[0])} for name in (*found, *coordinates)}
         return Prediction(
-            found, coordinates, units, f"Prediction, {level:.0%} bands", labels=record.labels
+            found, coordinates, own, f"Prediction, {level:.0%} bands", labels=record.labels
         )
 
     def residuals(self, values: Mapping[str, float]) -> Floats:

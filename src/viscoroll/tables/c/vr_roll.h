@@ -5,6 +5,7 @@
  */
 #ifndef VR_ROLL_H
 #define VR_ROLL_H
+#include <stddef.h>
 #ifndef VR_LAW_H
 #include "vr_law.h"
 #endif

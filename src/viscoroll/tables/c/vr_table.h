@@ -89,7 +89,7 @@ static inline double vr_field(const vr_table *table, const vr_table_place *p, co
   return sum;
 }
 
-/* delta_star: distance of the onset from free rolling, delta_0, on the side of the creepage; N is not known: NaN */
+/* delta_star: half the distance of the creepages at which full slip begins; N is not known: NaN */
 static inline vr_state vr_table_contact(const vr_table *table, double kappa, double V, double slip) {
   vr_state s;
   double u = kappa * fabs(V), D = 2.0 * kappa * vr_creepage(V, slip), sign = V < 0.0 ? -1.0 : 1.0;
@@ -105,7 +105,8 @@ static inline vr_state vr_table_contact(const vr_table *table, double kappa, dou
   s.lam = vr_field(table, &p, row, node, VR_TABLE_LAM), s.epsilon = vr_field(table, &p, row, node, VR_TABLE_EPSILON);
   s.beta = fmin(fmax(vr_field(table, &p, row, node, VR_TABLE_BETA), 0.0), 1.0);
   s.delta_0 = 0.5 * rest / kappa;
-  s.delta_star = 0.5 * fabs(vr_edge(table, p.row.first, row, VR_ONSET + (D >= rest)) - rest) / kappa;
+  s.delta_star = vr_edge(table, p.row.first, row, VR_ONSET + 1) - vr_edge(table, p.row.first, row, VR_ONSET);
+  s.delta_star *= 0.25 / kappa;
   return s;
 }
 
