@@ -72,8 +72,8 @@ SAID = {
     ),
     "no:": lambda: ROLLER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity().creep,
     # of DMA_ROLLER at V = 30
-    "14.03 m | 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s, which is reached after "
-    "25.5 s | 0.002 m/s of speed and 0.062 m of distance": lambda: (
+    "14.03 m | 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s, which is reached after a "
+    "time of 25.5 s | 0.002 m/s of speed and 0.062 m of distance": lambda: (
         pair(vr.Material(2.99e6, 0.5, DMA_ROLLER.material, 3.0), None).validity(1.0).steady
     ),
 }
