@@ -71,9 +71,9 @@ def maps_in(folder):
 
 @pytest.fixture
 def own_maps(tmp_path):
-    """Flow maps of a test are its own; compiled kernels stay where they are."""
+    """Flow maps of a test are its own; compiled kernels stay where they are.  Their folder."""
     with maps_in(tmp_path / "maps"):
-        yield
+        yield tmp_path / "maps"
 
 
 @pytest.fixture(scope="module")

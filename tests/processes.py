@@ -7,19 +7,33 @@ import sys
 from places import ROOT
 
 
-def python(*arguments, **environment):
-    """An interpreter with these arguments, in the repository's folder; an environment of its own
-    beside ours.
+def python(*arguments, cwd=ROOT, **environment):
+    """An interpreter with these arguments, in the repository's folder or another; an environment of
+    its own beside ours.
     """
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
-        cwd=ROOT,
+        cwd=cwd,
         env=os.environ | environment,
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=600,
         check=False,
     )
+
+
+def begun(text, folder, *arguments, **options):
+    """The program in a process of its own, at work on the run file of this text, and its store."""
+    (folder / "run.toml").write_text(text)
+    command = "-m viscoroll ensemble run.toml -o store.zarr --threads 2"
+    process = subprocess.Popen(
+        [sys.executable, *command.split(), *arguments],
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        **options,
+    )
+    return process, folder / "store.zarr"
 
 
 def printed(code, *arguments, **environment):

@@ -37,3 +37,13 @@ def each(call, given, error=vr.ParameterError, **usual):
             made = partial(call, *listed, **usual | named) if call else one
             found.append(pytest.param(made, words.split(" | "), error, id=words))
     return found
+
+
+def refusals(rows):
+    """The test of rows that ``each`` makes."""
+
+    @pytest.mark.parametrize(("call", "words", "error"), rows)
+    def test(call, words, error):
+        refused(call, *words, error=error)
+
+    return test

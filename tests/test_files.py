@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from calls import TREAD, grid
+from calls import TREAD, grid, law_file
 from ordinary_user import as_ordinary_user, let_in
 from refusals import refused
 
@@ -133,7 +133,7 @@ def test_no_change_goes_unnoticed():
 #: format -> how a file of it is written, and read
 FORMATS = {
     "law": (
-        lambda path: vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), path),
+        lambda path: vr.tables.save(law_file(), path),
         vr.load_law,
     ),
     "law of every alpha": (

@@ -15,10 +15,9 @@ HEAVY = "numba xarray matplotlib scipy dask h5py pandas pint msgspec tqdm"
 # --- the public interface ---
 
 
-def test_every_public_name_loads():
+def test_public_names():
+    """That each loads: test_keywords.py."""
     assert dir(vr) == sorted(vr.__all__)
-    for name in vr.__all__:
-        assert getattr(vr, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'contacts'"):
         _ = vr.contacts
     assert all(status.message for status in vr.MotionStatus)

@@ -27,7 +27,7 @@ from refusals import refused
 import viscoroll as vr
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-UNITS = pint.UnitRegistry()
+Quantity = pint.UnitRegistry().Quantity
 SCENE = vr.Scene(11.0, 10.0, 0.3, 1.0)
 CYLINDER = vr.Cylinder(R=1.0, m=40.0, E=2e6, nu=0.5, T_epsilon=0.5, T_sigma=0.05, mu=0.3)
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0], [0.5]), 0.25)
@@ -139,7 +139,7 @@ class Argument(namedtuple("Argument", "call function name value others")):
         except vr.ParameterError:
             return ""
         try:
-            self(UNITS.Quantity(np.asarray(self.value), "candela"))
+            self(Quantity(np.asarray(self.value), "candela"))
         except vr.ParameterError as error:
             text = str(error)
             assert re.search(REFUSED, text), text
@@ -252,8 +252,8 @@ def numbers_of(result):
 def others_of(unit, value):
     """The same quantity otherwise: by pint in the unit and in another, by xarray, as a duration."""
     value = np.asarray(value) if np.ndim(value) else value
-    spelled = UNITS.Quantity(1.0, unit.replace("-", "**-").replace("s2", "s**2")).units
-    yield UNITS.Quantity(value, spelled)
+    spelled = Quantity(1.0, unit.replace("-", "**-").replace("s2", "s**2")).units
+    yield Quantity(value, spelled)
     other = {
         "1": "percent",
         "kg m-1": "g/mm",
@@ -263,7 +263,7 @@ def others_of(unit, value):
         "rad s-1": "rpm",
         "s-1": "1/minute",
     }
-    yield UNITS.Quantity(value, spelled).to(other.get(unit, f"milli{spelled}"))
+    yield Quantity(value, spelled).to(other.get(unit, f"milli{spelled}"))
     if not np.ndim(value):
         yield xr.DataArray(value, attrs={"units": unit})
     if unit == "s":
@@ -290,7 +290,7 @@ def test_every_argument_is_converted_or_refused(call):
             for other in ("mol", *["1"] * (unit not in ("1", "rad")))
         ]
         wrong += [pd.Timedelta(1, "s"), np.timedelta64(1, "s")] * (unit != "s")
-        for other in (*wrong, [UNITS.Quantity(1.0, "mol")]):
+        for other in (*wrong, [Quantity(1.0, "mol")]):
             refused(partial(argument, other))
 
 
@@ -331,7 +331,7 @@ ODD = [
     Decimal("NaN"),
     pd.Series(["a"]),
     {1.0},
-    [UNITS.Quantity(1.0, ""), 2.0],
+    [Quantity(1.0, ""), 2.0],
 ]
 #: what is one
 GOOD = [
@@ -387,17 +387,17 @@ def test_schedules_carry_units(name, unit):
 
     values = np.array([0.5, 0.25])
     exact = rolled([0.0, 0.5], values)
-    milli = UNITS.Quantity(values, unit).to(f"milli{unit}")
+    milli = Quantity(values, unit).to(f"milli{unit}")
     for times in (
-        UNITS.Quantity(np.array([0.0, 500.0]), "ms"),
+        Quantity(np.array([0.0, 500.0]), "ms"),
         pd.to_timedelta([0.0, 0.5], "s"),
         [0.0, 0.5],
     ):
         found = rolled(times, milli)
         assert close([found.V, found.omega], [exact.V, exact.omega], tolerances.UNIT_CONVERTED)
-    long = partial(rolled, UNITS.Quantity(np.array([0.0, 0.5]), "m"), values)
+    long = partial(rolled, Quantity(np.array([0.0, 0.5]), "m"), values)
     refused(long, f"times of {name} is in meter", "in s")
-    heavy = partial(rolled, [0.0, 0.5], UNITS.Quantity(values, "kg"))
+    heavy = partial(rolled, [0.0, 0.5], Quantity(values, "kg"))
     refused(heavy, f"values of {name} is in kilogram")
     schedule = {name: vr.Schedule(pd.to_timedelta([0.0, 0.5], "s"), values)}
     refused(partial(of_scene, **schedule), f"times of {name} is in s: must be a number without")
@@ -410,12 +410,11 @@ def test_feedbacks_carry_units(name, units):
     values = 2.0, -0.25, -0.125
     exact = {name: vr.Feedback(*values)}
     milli = (
-        UNITS.Quantity(1e3 * value, f"milli{unit}")
-        for value, unit in zip(values, units, strict=True)
+        Quantity(1e3 * value, f"milli{unit}") for value, unit in zip(values, units, strict=True)
     )
     found = {name: vr.Feedback(*milli)}
     assert close(of_cylinder(**found).V, of_cylinder(**exact).V, tolerances.UNIT_CONVERTED)
-    wrong = {name: vr.Feedback(2.0, V=UNITS.Quantity(1.0, "kg"))}
+    wrong = {name: vr.Feedback(2.0, V=Quantity(1.0, "kg"))}
     refused(partial(of_cylinder, **wrong), f"V of {name} is in kilogram")
     for call in (of_scene, SCENE.steady):
         refused(partial(call, **found), f"value of {name} is in", "without dimension")
@@ -423,9 +422,9 @@ def test_feedbacks_carry_units(name, units):
 
 def test_functions_of_time_give_quantities():
     exact = of_cylinder(force=lambda t: 2.0 * t)
-    found = of_cylinder(force=lambda t: UNITS.Quantity(2e3 * t, "mN/m"))
+    found = of_cylinder(force=lambda t: Quantity(2e3 * t, "mN/m"))
     assert close(found.V, exact.V, tolerances.UNIT_CONVERTED)
-    with_unit = partial(of_scene, force=lambda t: UNITS.Quantity(t, "N/m"))
+    with_unit = partial(of_scene, force=lambda t: Quantity(t, "N/m"))
     refused(with_unit, "force(t) is in newton / meter")
 
 

@@ -24,7 +24,7 @@ from calls import (
     STEEL,
     THIN,
 )
-from refusals import each, refused
+from refusals import each, refusals
 from scipy import stats
 
 import viscoroll as vr
@@ -239,11 +239,7 @@ REFUSED += each(
         "design 'sobol' = 21202: must be": lambda: points("sobol", 0, 9, 21_202, 0, 9, 0),
     },
 )
-
-
-@pytest.mark.parametrize(("call", "words", "error"), REFUSED)
-def test_refused(call, words, error):
-    refused(call, *words, error=error)
+test_refused = refusals(REFUSED)
 
 
 def test_errors_of_input_are_value_errors():

@@ -23,7 +23,7 @@ from calls import (
     of_roller,
     run,
 )
-from refusals import each, refused
+from refusals import each, refusals
 
 import viscoroll as vr
 from viscoroll.core import write_dataset
@@ -32,10 +32,6 @@ from viscoroll.presets import read_roller
 from viscoroll.runs import read_run
 
 pytestmark = pytest.mark.usefixtures("here")
-
-
-def of_dma(content):
-    return vr.read_dma(file(content))
 
 
 def of_grid(table):
@@ -52,18 +48,6 @@ OF_LAW = '[material]\nfile = "given.nc"\n'
 SOFT_DATA = material_as_dataset(SOFT)
 REFUSED = [
     *each(measured, {"unknown E = 3000000.0 | (low, high)": ("E = [3e5, 3e7]", "E = 3e6")}),
-    *files(
-        of_dma,
-        {
-            "'1e999' is too large, above 1.8e308": "omega [rad/s];E' [Pa];E'' "
-            "[Pa]\n1;2;3\n2;1e999;3\n3;2.5;3\n",
-            "line 3 (400; 1; 1): the frequency must be > 0 and finite": "log f [Hz],E' [Pa],E'' "
-            "[Pa]\n2,1,1\n400,1,1\n",
-            "its unit '‰' is not a unit of tan delta": "f [Hz],E' [Pa],tan δ [‰]\n1,1,1\n2,1,1\n",
-            "unit 'Hz and rad/s' is not a unit of frequency | unit 'MPa and kPa' is not a unit "
-            "of storage": "f [Hz],E' [MPa],E'' [MPa]\nrad/s,kPa,kPa\n1,1,1\n2,1,1\n",
-        },
-    ),
     *files(
         of_materials,
         {
@@ -108,11 +92,6 @@ REFUSED = [
             "the table for x.nc: variable 'Q' has units = 'N': must be '1'": lambda: vr.tables.save(
                 grid().assign(Q=grid().Q.assign_attrs(units="N")), "x.nc"
             ),
-            'columns "E\' [Pa]" and "E\' [Pa]" are both named "E\' [Pa]": rename or remove one '
-            "in the file": lambda: vr.read_dma(
-                file("omega [rad/s], E' [Pa], E'' [Pa], E' [Pa]\n1,2,3,4\n2,3,4,5\n"),
-                columns={"storage": "E' [Pa]"},
-            ),
             "column 'j' of none.nc: the file does not exist": lambda: run(
                 "a preset", "j = 0.4", 'j = { file = "none.nc", column = "j" }'
             ),
@@ -127,7 +106,6 @@ REFUSED = [
                 'omega0 = { distribution = "norm", loc = 0.05, scale = 0.1 }',
                 'omega0 = {{ column = "n", file = "{}" }}'.format(file("n [1/min]\n1\n", "n.csv")),
             ),
-            "dma.txt | line 2 ('4 5') has 2": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
             "is the law of every alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"
             ),
@@ -344,9 +322,4 @@ REFUSED = [
         },
     ),
 ]
-
-
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-@pytest.mark.parametrize(("call", "words", "error"), REFUSED)
-def test_refused(call, words, error):
-    refused(call, *words, error=error)
+test_refused = refusals(REFUSED)

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import tolerances as tol
+from calls import ONE
 from closeness import close
 from drives import DMA
 from drives import ON_DMA as ROLLER
@@ -15,7 +16,6 @@ from scipy.optimize import brentq
 
 import viscoroll as vr
 
-ONE = vr.Scene(11.0, 10.0, 0.5, 120.0)
 UNLIKE = ROLLER.replace(material=vr.Bodies(DMA, vr.Prony([4.0], [3e-3]), 0.3))
 
 

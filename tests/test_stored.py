@@ -7,12 +7,6 @@ from viscoroll.kernels.motion.flow_layout import SIZE
 from viscoroll.motion import flow
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(flow, "folder", lambda: tmp_path / "made")
-    return tmp_path / "made"
-
-
 def place(alpha):
     """Parameters of a map, and its file."""
     parameters = alpha, 10.0, 0.3, 0.5
@@ -32,20 +26,20 @@ def kept(alpha):
     return True
 
 
-def test_what_others_may_have_written_is_not_read(folder):
+def test_what_others_may_have_written_is_not_read(own_maps):
     kept(2.0)
-    (path,) = folder.iterdir()
-    folder.chmod(0o777)
+    (path,) = own_maps.iterdir()
+    own_maps.chmod(0o777)
     path.write_bytes(b"others' work, which is damaged if it is looked at")
     assert not kept(2.0)
     assert path.read_bytes().startswith(b"others")
-    folder.chmod(0o755)
+    own_maps.chmod(0o755)
     with pytest.warns(RuntimeWarning, match="cannot be used"):
         assert not kept(2.0)
     assert kept(2.0)
 
 
-def test_a_damaged_map_is_built_again(folder):
+def test_a_damaged_map_is_built_again(own_maps):
     for number in (2.0, 3.0):
         kept(number)
     path, other = (place(number)[1] for number in (2.0, 3.0))

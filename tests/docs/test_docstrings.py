@@ -56,9 +56,8 @@ SHOWN = shown_on_the_site()
     "ignore::viscoroll.ModelWarning"
 )  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("name", MODULES)
-def test_examples_of_docstrings(name, tmp_path, monkeypatch):
+def test_examples_of_docstrings(name, here):
     """Every line of every Examples section, with its output; files go to a temporary folder."""
-    monkeypatch.chdir(tmp_path)
     options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
     tried = doctest.testmod(import_module(name), extraglobs={"vr": vr}, optionflags=options)
     assert not tried.failed

@@ -23,8 +23,8 @@ pytestmark = pytest.mark.filterwarnings(
 def test_labelled_and_saved_without_a_warning(tmp_path):
     assert FIGURES.keys() == {name for figures in SECTIONS.values() for name in figures}
     starts = np.random.default_rng(0).uniform(-2.0, 2.0, (2, 200))
-    few = vr.presets.PAPER_SECTION_5_ROUNDED.ensemble(*starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4)
     scene = vr.presets.PAPER_SECTION_5_ROUNDED
+    few = scene.ensemble(*starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4)
     V = np.geomspace(1e-2, 4.0, 21)
     grid = vr.tables.build(
         scene, V, delta=vr.tables.creep_nodes(scene, V, 21), alpha=[1.5, 11.0, 81.5]

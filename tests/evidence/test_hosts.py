@@ -5,10 +5,10 @@ full disk.
 import os
 import platform
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
+import c_code
 import numpy as np
 import pytest
 import tolerances as tol
@@ -73,13 +73,8 @@ if "fork" in multiprocessing.get_all_start_methods():
 def elsewhere(tmp_path_factory):
     """``everything`` of the program above, in each mode and in a fork."""
     folder = tmp_path_factory.mktemp("modes")
-    compiler = shutil.which("cc") if platform.machine() in ("x86_64", "AMD64") else None
-    if compiler:
-        (folder / "register.c").write_text(REGISTER)
-        subprocess.run(
-            [compiler, "-shared", "-fPIC", "-o", folder / "register.so", folder / "register.c"],
-            check=True,
-        )
+    if shutil.which("cc") and platform.machine() in ("x86_64", "AMD64"):
+        c_code.compiled(folder, "register", REGISTER)
     environment = {"VISCOROLL_THREADS": "2", "PYTHONPATH": os.pathsep.join(sys.path)}
     printed(ELSEWHERE, folder, Path(__file__).parent, **environment)
     return {path.stem: dict(np.load(path)) for path in folder.glob("*.npz")}
@@ -152,11 +147,7 @@ setsid setuid statvfs sync sysconf uname wait wait3 wait4
 
 def test_every_module_loads_and_a_run_ends_without_posix(tmp_path):
     (tmp_path / "run.toml").write_text(RUN)
-    command = [sys.executable, "-c", NOT_POSIX, POSIX_ONLY]
-    done = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False
-    )
-    assert done.stdout == "True\n", done.stderr
+    assert printed(NOT_POSIX, POSIX_ONLY, cwd=tmp_path) == "True\n"
     assert (tmp_path / "store.nc").exists()
 
 

@@ -25,9 +25,8 @@ def test_howto_runs(page):
         assert close(session["controlled_V"], session["target"], tol.EXAMPLE_RADAU)
 
 
-def test_the_page_of_measurements_runs(monkeypatch, capsys, tmp_path):
+def test_the_page_of_measurements_runs(here, capsys):
     """And finds the truth by which its data were made, in any folder."""
-    monkeypatch.chdir(tmp_path)
     session = {}
     codes = [
         code
@@ -53,13 +52,12 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys, tmp_path):
     assert "planned: expected standard deviations, if the cylinder has the true values" in shown
 
 
-def test_example_of_a_coupled_grid_runs(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_example_of_a_coupled_grid_runs(here, capsys):
     assert cli.main(["tables", "grid", "--help"]) == 0
     _, *examples = capsys.readouterr().out.split("\n  viscoroll ")
     for example in examples:
         assert cli.main(shlex.split(example)) == 0
-    assert (tmp_path / "rubber.nc").exists()
+    assert (here / "rubber.nc").exists()
 
 
 def test_run_file_pages_can_be_followed(here, capsys):

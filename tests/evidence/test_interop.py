@@ -195,13 +195,11 @@ def states(material):
         10.0 ** random.uniform(-12.0, -0.1, count),
         random.uniform(0, 1.3, count),
     )
-    share = np.where(
-        abs(share - 1.0) < 1e-3, 0.5, share
-    )  # there beta has no digits but those of its condition
+    # there beta has no digits but those of its condition
+    share[abs(share - 1.0) < 1e-3] = 0.5
     slip = share * star * V * random.choice([-1.0, 1.0], count)
     V[:3] = 0.0
-    slip[:3] = (0.0, 0.1, -0.1)
-    slip[3] = 0.0
+    slip[:4] = (0.0, 0.1, -0.1, 0.0)
     return np.column_stack([kappa, mu, V, slip])
 
 

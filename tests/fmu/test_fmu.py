@@ -11,6 +11,7 @@ from functools import cache, partial
 import numpy as np
 import pytest
 import tolerances as tol
+from c_code import needs_cc
 from calls import STEEL
 from closeness import close
 
@@ -19,7 +20,7 @@ from viscoroll import fmu
 from viscoroll.cli import main
 from viscoroll.core.errors import MissingDependencyError
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
+pytestmark = needs_cc
 fmpy = pytest.importorskip("fmpy", reason="not installed (make interop): fmpy")
 validation = pytest.importorskip("fmpy.validation")
 
@@ -102,6 +103,11 @@ class Instance:
     def step(self, t, h):
         """From t by h, in co-simulation."""
         self.fmu.doStep(t, h)
+
+    def in_c(self, name):
+        """A function of the standard, of this instance."""
+        function = getattr(self.fmu.dll, f"fmi{2 if self.two else 3}{name}")
+        return partial(function, ctypes.c_void_p(self.fmu.component))
 
     def refuses(self, words, call, *given, **named):
         """A call of the FMU fails, and the last message has these words."""
@@ -350,9 +356,8 @@ def call_of(one, name):
     """A call of an instance by its name in the tables above."""
 
     def change():
-        name_in_c = f"fmi{2 if one.two else 3}{name[0].upper()}{name[1:]}"
-        if status := getattr(one.fmu.dll, name_in_c)(ctypes.c_void_p(one.fmu.component)):
-            raise fmpy.fmi1.FMICallException(name_in_c, status)
+        if status := one.in_c(name[0].upper() + name[1:])():
+            raise fmpy.fmi1.FMICallException(name, status)
 
     if "Mode" in name:
         return change
@@ -480,17 +485,14 @@ def test_counts_and_times_that_cannot_be_are_refused(built, name):
         one.fmu.exitInitializationMode()
         one.fmu.enterContinuousTimeMode()
         at = one.get("v slip x der_v")
-        rates = "fmi2GetDerivatives" if one.two else "fmi3GetContinuousStateDerivatives"
-        version = rates[:4]
         for called in (
-            f"{version}SetContinuousStates",
-            f"{version}GetContinuousStates",
-            rates,
-            f"{version}GetNominalsOfContinuousStates",
+            "SetContinuousStates",
+            "GetContinuousStates",
+            "GetDerivatives" if one.two else "GetContinuousStateDerivatives",
+            "GetNominalsOfContinuousStates",
         ):
-            call = getattr(one.fmu.dll, called)
             for n in (2, 4):
-                assert call(ctypes.c_void_p(one.fmu.component), *_pointer(np.ones(n)))
+                assert one.in_c(called)(*_pointer(np.ones(n)))
                 assert f"number of values = {n}: must be 3" in one.said[-1]
         one.refuses("time = nan: must be finite", one.fmu.setTime, np.nan)
         assert np.array_equal(one.get("v slip x der_v"), at)

@@ -12,10 +12,6 @@ from many import UNLIKE
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings(
-    "ignore::viscoroll.ModelWarning"
-)  # the paper's own scene is beyond the model
-
 WIDE = vr.Prony([0.5, 3.0, 8.0, 20.0], [1.0, 3e-2, 4e-5, 1e-9])
 #: random series: modes, decades that their times span, size of the strengths
 SERIES = st.tuples(

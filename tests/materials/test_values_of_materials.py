@@ -14,7 +14,7 @@ import viscoroll as vr
 from viscoroll.kernels.law.bessel_ratios import ratio_i2, ratio_k, ratio_r
 from viscoroll.laws.law_netcdf import law_table_of
 from viscoroll.laws.law_table import law_table
-from viscoroll.presets import PAPER_CYLINDER
+from viscoroll.presets import PAPER_CYLINDER, PAPER_SECTION_5
 
 pytestmark = [
     pytest.mark.usefixtures("here"),
@@ -33,7 +33,7 @@ def test_cylinder_and_scene():
     scene = cylinder.scene()
     E_prime = pi * 2.3e5 / (1.0 - 0.49**2)
     load = 35.5 * 9.81
-    assert scene == vr.presets.PAPER_SECTION_5
+    assert scene == PAPER_SECTION_5
     for found, exact in (
         (cylinder.load, load),
         (cylinder.l0, math.sqrt(32.0 * 0.1 * load / E_prime)),
@@ -53,11 +53,10 @@ def test_a_given_load():
     """Kappa and gamma by P; the weight is made anew where another mass is given, a load is not."""
     loaded = vr.Cylinder(**SI, load=1e3)
     scene = loaded.scene()
-    paper = vr.presets.PAPER_SECTION_5
     by_load = 1e3 / (35.5 * 9.81)
-    assert close(scene.kappa, paper.kappa / math.sqrt(by_load), tol.SCENE)
-    assert close(scene.gamma, paper.gamma * by_load, tol.SCENE)
-    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == paper
+    assert close(scene.kappa, PAPER_SECTION_5.kappa / math.sqrt(by_load), tol.SCENE)
+    assert close(scene.gamma, PAPER_SECTION_5.gamma * by_load, tol.SCENE)
+    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == PAPER_SECTION_5
     assert replace(vr.Cylinder(**SI), m=1.0).load == 9.81
     assert replace(loaded, m=1.0).load == 1e3
 
@@ -67,10 +66,9 @@ def test_a_material_in_place_of_the_four_parameters():
     rubber = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
     made = pair(rubber, None)
     scene = made.scene()
-    paper = vr.presets.PAPER_SECTION_5
-    assert scene.replace(material=None, alpha=paper.alpha) == paper
+    assert scene.replace(material=None, alpha=PAPER_SECTION_5.alpha) == PAPER_SECTION_5
     assert scene.material == rubber.prony
-    assert vr.Cylinder(**SI, base=rubber).scene() == paper
+    assert vr.Cylinder(**SI, base=rubber).scene() == PAPER_SECTION_5
 
 
 def test_moduli_and_times_of_pairs():

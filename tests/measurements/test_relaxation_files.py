@@ -5,7 +5,7 @@ import pytest
 import tolerances as tol
 from calls import file, rows
 from closeness import close
-from refusals import each, refused
+from refusals import each, refusals
 
 import viscoroll as vr
 
@@ -74,8 +74,4 @@ REFUSED = each(
     },
     vr.FileError,
 )
-
-
-@pytest.mark.parametrize(("call", "words", "error"), REFUSED)
-def test_relaxation_is_refused(call, words, error):
-    refused(call, *words, error=error)
+test_relaxation_is_refused = refusals(REFUSED)

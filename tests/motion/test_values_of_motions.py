@@ -1,6 +1,5 @@
 """Motions by hand, and what results of them show."""
 
-import math
 import pickle
 from math import inf, nan
 
@@ -94,7 +93,7 @@ def test_what_results_show():
     # there
     m = PAPER.roll(1.5, 0.5, 1.0, force=vr.Schedule([0.0, 0.001, 0.001], [0.1, 0.1, 0.0]))
     assert (m.V[-1], m.switches[-1].regime) == (0.0, "partial slip")
-    assert math.isnan(m.rest_time)
+    assert np.isnan(m.rest_time)
     # with a threshold far below the speed at which V decays exponentially, the change to rest is
     # a switch too; delta is 0 there, of a cover too
     for scene in (PAPER, COVERED):

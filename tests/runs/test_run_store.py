@@ -8,13 +8,13 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from contextlib import contextmanager
 from functools import partial
 
 import pytest
 from places import content
+from processes import begun
 from refusals import refused
 from run_files import run_of
 
@@ -226,20 +226,6 @@ def test_a_run_that_cannot_grow_is_refused(tmp_path, before, now, words):
     larger = run_of(text.replace("n = 1200", now), tmp_path)
     refused_file(lambda: run_ensemble(larger, store), words, "give another folder")
     assert content(store) == was
-
-
-def begun(text, folder, **options):
-    """The program in a process of its own, at work on a run, and its store."""
-    (folder / "run.toml").write_text(text)
-    command = "-m viscoroll ensemble run.toml -o store.zarr --threads 2"
-    process = subprocess.Popen(
-        [sys.executable, *command.split()],
-        cwd=folder,
-        stdout=subprocess.DEVNULL,
-        text=True,
-        **options,
-    )
-    return process, folder / "store.zarr"
 
 
 def test_a_killed_run_goes_on(run, tmp_path, whole):
