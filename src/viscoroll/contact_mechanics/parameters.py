@@ -406,9 +406,12 @@ class Parameters(Roller):
     @property
     def uncoupled(self) -> Self:
         """The scene by the law without a table; the scene itself where that is its law, or where a
-        law was given.
+        table was given that has no bodies, as a grid.
         """
-        return self.replace(coupled=False) if self._law is None and self.tabulated else self
+        bodies = self.material
+        if not self.tabulated or not isinstance(bodies, Bodies):
+            return self
+        return self.replace(material=bodies, coupled=False)
 
     @property
     def like_bodies(self) -> bool:
