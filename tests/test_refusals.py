@@ -103,7 +103,7 @@ REFUSED += each(
     vr.ensemble,
     {
         "V0 or omega0 has shape (1, 2): must be a number or a vector (n,)": {"V0": [[1.0, 2.0]]},
-        "V0 = 1: must be left out, or 2, the prescribed V at t = 0": {"V": 2.0},
+        "V0 = 1: must be left out (in Python None), or 2, the prescribed V at t = 0": {"V": 2.0},
         "V is empty: must be": {"V0": None, "V": []},
         "coordinates": {"V0": LABELLED, "omega0": LABELLED.assign_coords(run=["a", "c"])},
     },
@@ -113,7 +113,7 @@ REFUSED += each(
 REFUSED += each(
     vr.ensemble,
     {
-        "V0 = 1 m s-1 of motion 1: must be left out, or 3 m s-1, the prescribed V": {
+        "V0 = 1 m s-1 of motion 1: must be left out (in Python None), or 3 m s-1, the": {
             "V": [1.0, 3.0]
         },
         "V0 = 1e+121 m s-1 of motion 1: must be at most 1.": {"V0": [1.0, 1e121]},

@@ -327,7 +327,7 @@ REFUSED = [
                 "brake = 0.01",
                 'brake = { times = [{ distribution = "uniform" }, 0.5], values = [1.0, 2.0] }',
             ),
-            "file.toml: line 4: [start] V0 = 0: must be left out, or 0.01, the prescribed V": (
+            "file.toml: line 4: [start] V0 = 0: must be left out | or 0.01, the prescribed V": (
                 "driven",
                 "brake = 0.01",
                 "V = 0.01",

@@ -106,8 +106,8 @@ SAID = [
                 FreeRolling.of_scene(DMA_ROLLER, 30.0).scaled(Scale(R=0.1, T=3.0))
             ).sentence
         ),
-        "14.03 m | 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s, which is reached after "
-        "25.5 s | 0.002 m/s of speed and 0.062 m of distance",
+        "14.03 m | 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s, which is reached after a "
+        "time of 25.5 s | 0.002 m/s of speed and 0.062 m of distance",
     ),
 ]
 #: on a thin cover no contact is longer than the radius: its pressure shows a wrong unit

@@ -333,6 +333,13 @@ def test_losses_are_what_the_loads_put_in():
 # --- arrays ---
 
 
+def test_masses_change_the_rates_alone():
+    roller = vr.presets.RUBBER_CYLINDER.replace(load=300.0)
+    found = roller.replace(m=[10.0, 20.0]).steady(V=1.0, torque=0.0)
+    assert close(found.force[:, 0], roller.steady(V=1.0, torque=0.0).force[0], tol.SCENE)
+    assert close(found.eigenvalues[0], 2.0 * found.eigenvalues[1], tol.SCENE)
+
+
 def test_eigenvalues_at_the_least_and_largest_numbers():
     """The slope over slip, mu kappa/V, exceeds the square root of the doubles; that over V
     is -T_mean/(1 + j) still.

@@ -29,7 +29,7 @@ from .arguments import FIGURES, FILE, SCENE, command, numbers, option, output, r
 def show(arguments: Namespace) -> None:
     """Print moduli, relaxation modes and creep modes of the materials of a file.
 
-    The values are those at the temperature that the file states.
+    The values are those at the temperature that the file states, if it states one.
 
     example:
       viscoroll samples
@@ -359,8 +359,8 @@ def law(arguments: Namespace) -> None:
     """Write the contact law of a material, pair, cover or range of alpha to a file.
 
     .nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
-    or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
-    every alpha of a range.  For a cover it is the fast law (coupled = false); `tables grid` writes the coupled solution.
+    or C++; .json is for JavaScript.  --alpha writes the law of one relaxation time for every alpha of a range.  For a
+    cover, and for half-spaces with Dundurs' constant above 0.05, it is the fast law (coupled = false).
 
     example:
       viscoroll samples
@@ -402,7 +402,7 @@ def law(arguments: Namespace) -> None:
         "--method",
         default="table",
         help="table (default): the law of the scene; direct: numerical solution "
-        "of the equations in each node",
+        "of the equations in each node, for half-spaces of one relaxation time",
     ),
     output(*_GRID),
 )
@@ -410,7 +410,8 @@ def build(arguments: Namespace) -> None:
     """Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
     The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
-    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.
+    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.  Half-spaces
+    with Dundurs' constant above 0.05 need coupled = false.
 
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
@@ -421,8 +422,7 @@ def build(arguments: Namespace) -> None:
         method, "table" or "direct";
         output, path that is written; its suffix is the format.
     Raises ParameterError for nodes or a method that are not allowed, for .txt of a grid over
-    several alphas, and for a suffix in capital letters; FileError for a file that cannot be read or
-    written.
+    several alphas, and for a suffix in capital letters; FileError for a file that fails.
     """  # noqa: E501
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
     _export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
@@ -489,9 +489,9 @@ def info(arguments: Namespace) -> None:
 def validate(arguments: Namespace) -> int:
     """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
-    The law of a cover is compared with solutions of the contact.  The exit code is 1 if an error is larger than twice
-    the error that the file states (eight times for a table of the coupled solution).  For a grid it is also 1 if an
-    error is larger than half of the largest value of its quantity, or if a node differs from the law by more than 1e-12.
+    A grid must be that of a scene with alpha.  The law of a cover is compared with solutions of the contact.  The exit
+    code is 1 if an error is larger than twice that stated (eight times for a table of the coupled solution), for a grid
+    also if it is larger than half of the largest value, or if a node differs from the law by more than 1e-12.
 
     example:
       viscoroll samples
@@ -548,9 +548,9 @@ def export(arguments: Namespace) -> None:
     option(
         "file",
         metavar="MATERIAL_OR_LAW",
-        help="TOML file with [material], perhaps [base], and perhaps [cylinder], whose numbers are "
-        "the start values; the "
-        "file of `viscoroll tables law`; the netCDF of a material; or the name of a preset",
+        help="TOML file with [material], perhaps [base], and perhaps [cylinder], whose R, m, mu, "
+        "j and load become default values of the FMU; the file of `viscoroll tables law`; the "
+        "netCDF of a material; or the name of a preset",
     ),
     option("--model", default="Roller", help="Roller (default) or ContactElement"),
     option("--fmi", type=int, default=2, help="version of the FMI standard: 2 (default) or 3"),
@@ -560,7 +560,7 @@ def fmu(arguments: Namespace) -> None:
     """Build an FMU of a cylinder, for Modelica tools and others.
 
     The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
-    For a cover it is the fast law, as with coupled = false.
+    For a cover, and for half-spaces with Dundurs' constant above 0.05, it is the fast law, as with coupled = false.
     Roller: inputs drive force and torque, outputs v, slip, omega, x; for co-simulation and model exchange.
     ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
     Both provide directional derivatives, which are exact except over the load of a cover.

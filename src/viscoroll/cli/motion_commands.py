@@ -219,7 +219,7 @@ def steady(arguments: Namespace) -> None:
     """Find the steady speeds under force, torque or slope.
 
     Each row is a steady speed under one of the loads.  If a load has no steady speed, the reason is printed.
-    Options are written as the numbers of `viscoroll contact`: single numbers, or lists of equal length.
+    Options are numbers as in `viscoroll contact`, or lists of equal length (the slope of a cover: one number).
 
     example:
       viscoroll steady paper-section-5-rounded --slope 0:0.1:6
@@ -246,7 +246,9 @@ def steady(arguments: Namespace) -> None:
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
         further = len(lines) - _MOST_LINES
-        lines[_MOST_LINES:] = [f"{further} further loads (counted from 0) have no steady speed"]
+        lines[_MOST_LINES:] = [
+            f"no steady speed for {further} more of the loads, of which the first is load 0"
+        ]
     if (
         arguments.output is not None or arguments.format != "text"
     ):  # a table for programs has no heading
@@ -275,7 +277,8 @@ def heat(arguments: Namespace) -> None:
     """Find the temperatures at which a cylinder runs.
 
     Each row is a temperature at which rolling loss and heat given off are equal; unstable ones lie between stable ones.
-    The file needs [cylinder], and [material] the key wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
+    The file needs [cylinder], and the body that relaxes the key wlf or arrhenius; if both relax, they must be of one
+    material.  Options are numbers as in `viscoroll contact` (the slope of a cover: one number).
 
     example:
       viscoroll samples
@@ -285,8 +288,7 @@ def heat(arguments: Namespace) -> None:
         that has a shift; V, ambient, conductance, force, torque, slope, numbers or (n,), or None;
         output and format as in ``steady``.
     The table has a row for each equilibrium, with the fields of :func:`viscoroll.temperature`.
-    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
-    or written.
+    Raises ParameterError for values that are not allowed, FileError for a file that fails.
     """  # noqa: E501
     given = _given(arguments, "V", "ambient", "conductance", "force", "torque", "slope")
     found = roller_of_argument(arguments.scene).temperature(**given)

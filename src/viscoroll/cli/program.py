@@ -71,7 +71,7 @@ def warm_up(arguments: argparse.Namespace) -> None:
     """Compile all kernels in advance, so that the first calls do not wait.
 
     The compiled kernels go into the cache, once for each machine and version of the package.  If they are there
-    already, the command takes a second.
+    already, the command takes some seconds.
 
     example:
       viscoroll warmup

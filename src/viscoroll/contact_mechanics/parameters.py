@@ -538,8 +538,7 @@ def resolve_model(
 
 
 def refuse_cover(scene: Parameters, why: str) -> None:
-    """Raise ParameterError where a body of ``scene`` is a layer of finite thickness; of half-spaces
-    do nothing.
+    """Raise ParameterError where shear acts on the pressure of the bodies of ``scene``.
 
     ``why``: end of the message, the reason why the function does not take one.
     """

@@ -562,9 +562,9 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     if wrong.any():
         allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
         raise ParameterError(
-            "force + torque/R, divided by the load and times R/l0,",
+            "(force + torque/R)/load * R/l0",
             f"{total[wrong][0]:g}",
-            f"{allowed} (R = load = 1 in a scene)",
+            f"{allowed} (l0 is the contact length at rest; in a scene R = load = 1, R/l0 = kappa)",
         )
     if not gain and law.alpha == 1.0:
         return States.none()

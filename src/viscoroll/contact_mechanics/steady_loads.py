@@ -136,7 +136,8 @@ def loads_of(
     if V is not None:
         arrays["V"] = check_array("V", V)
         refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
-    shape = broadcast_shape(**arrays)
+    # the rates of disturbances are proportional to gamma
+    shape = broadcast_shape(**arrays, gamma=0.0 if scene.gamma is None else scene.gamma)
     # the rows are in the order of the fields of Loads; slope counts for the shape alone before
     arrays["force"] = push + arrays.pop("slope")
     rows = broadcast_rows(arrays.values(), shape)

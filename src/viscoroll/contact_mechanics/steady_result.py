@@ -151,8 +151,8 @@ class Diagnosis(NamedTuple):
         M, V = (value / kappa for value in self.maximum)
         if np.isnan(M):
             return (
-                f"{name} with its feedback ({total:.6g}{of_load} at rest) is at no speed equal to "
-                f"the {moment}"
+                f"at no speed that was searched the {moment} equals {name} ({total:.6g}{of_load} "
+                "at rest)"
             )
         return (
             f"|{name}| = {abs(total):.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest "

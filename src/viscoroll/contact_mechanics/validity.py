@@ -289,7 +289,8 @@ def _describe_free(free: FreeRolling) -> str:
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
     if fine.speed:
         reached = (
-            f"which is reached after {most.time:.3g}{time}, {most.left:.2g}{length} before the end"
+            f"which is reached after a time of {most.time:.3g}{time}, at a distance of "
+            f"{most.left:.2g}{length} before the end"
         )
         end = f"down to {most.speed:.2g}{speed}, {reached}"
         text += f"10 % {end if most.speed else 'to the end'}"

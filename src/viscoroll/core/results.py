@@ -159,7 +159,7 @@ class Result:
 
     def __contains__(self, name: object) -> bool:
         """Whether ``name`` is one of :meth:`keys`."""
-        return name in self.keys()
+        return name in tuple(self.keys())
 
     def __repr__(self) -> str:
         return as_text(*self._summary())

@@ -186,6 +186,7 @@ def material_as_toml(material: Material, section: str = "material") -> str:
         f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = "
         f"{_quote(band.source)}{strain}"
         f"{f', M_error = {[list(pair) for pair in band.M_error]}' * bool(band.M_error)} }}"
+        "  # low, high: rad/s; M_error: pairs of a transit frequency, 1/s, and relative error of M"
     )
     values |= shifts_as_toml(material.shift, material.vertical_shift)
     lines = [f"{name} = {value}" for name, value in values.items() if value is not None]

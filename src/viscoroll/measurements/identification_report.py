@@ -466,7 +466,11 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
             f"of {least:.3g} to {most:.3g}",
         )
     else:
-        yield "accuracy", "not known, since the data cover no speed"
+        yield (
+            "accuracy",
+            "of the rolling moment M: not known, since no speed has data from f to 3 f (rad/s; f = "
+            "speed/contact length) at which the material loses energy",
+        )
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
         yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"

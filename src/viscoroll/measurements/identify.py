@@ -196,7 +196,7 @@ def _refuse_tables(cylinder: Cylinder, unknowns: list[Unknown]) -> None:
     if changing and cylinder.scene().tabulated:
         raise described_error(
             "coupled",
-            f"= True needs a table of the coupled solution for each trial value of {changing[0]}",
+            f"is not False: the coupled solution needs a table for each value of {changing[0]}",
             "False in the Cylinder, for the fast law, whose error cylinder.validity(V) states",
         )
 

@@ -356,7 +356,9 @@ class _Layout:
             if not row.numeric:
                 advice = "remove it, or begin it with #"
                 if self.footers:
-                    advice += "; write the temperature of the rows below as 'Temperature 20 °C'"
+                    advice += (
+                        "; if it is the temperature of the rows below, write 'Temperature 20 °C'"
+                    )
                 raise self.fault(row, f"is not a row of numbers: {advice}")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
@@ -540,7 +542,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     # of the likeliest way that has one; ``log`` is the same for all ways
     named = [each for each in found if each.name == name]
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
-    advice = f"write its unit in the heading, as in '{heading} [{wanted}]'"
+    advice = f"write its unit in the heading, as in '{name} [{wanted}]'"
     factor, offset = conversion_of_column(
         table.path, heading, unit=unit, wanted=wanted, advice=advice
     )

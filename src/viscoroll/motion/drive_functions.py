@@ -327,7 +327,10 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
         broadcast_shape(**{f"{name}0": given, name: start if start.size > 1 else np.empty(())})
         differ = np.abs(given - start) > _START * scale
         if differ.any():
-            text = f"{name}0 = {{}}: must be left out, or {{}}, the prescribed {name} at t = 0"
+            text = (
+                f"{name}0 = {{}}: must be left out (in Python None), or {{}}, the prescribed "
+                f"{name} at t = 0"
+            )
             n = int(differ.argmax())
             numbers = np.stack(np.broadcast_arrays(given, start))[:, differ][:, 0]
             raise dimensionless_error(f"{name}0", text, name, *numbers, motion=n)

@@ -394,10 +394,10 @@ def _no_extension(before: Run, run: Run) -> str:
 #: Letter of a Prony series in the name of an input, as in tau_2 -> meaning of the number, with its
 #: index.
 _SERIES = {
-    "E": "strength {} of relaxation, divided by the long-time modulus",
-    "tau": "relaxation time {} divided by T_ref",
-    "J": "strength {} of creep, divided by the long-time compliance",
-    "T": "retardation time {} divided by T_ref",
+    "E": "strength of relaxation mode {}, divided by the long-time modulus",
+    "tau": "relaxation time of mode {}, divided by T_ref",
+    "J": "strength of creep mode {}, divided by the long-time compliance",
+    "T": "retardation time of mode {}, divided by T_ref",
 }
 
 

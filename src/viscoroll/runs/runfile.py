@@ -51,6 +51,7 @@ from ..motion import (
     output_times,
 )
 from ..presets import check_sections, locate_error
+from ..rollers import Scene
 from ..sampling import Design
 from .run_rollers import RUN_SECTIONS, Rollers, drive_of, roller_of
 from .uncertain_inputs import Inputs, inputs_in, inputs_of
@@ -89,15 +90,16 @@ class RunSection(msgspec.Struct, frozen=True):
     design : "random" draws inputs independently, "latin" in a Latin hypercube, "sobol" from a Sobol
     sequence.
     method : "flow" reads the motions from a flow map, for which start speeds alone may be
-    uncertain, without [drive] and unsteady; "integrate" integrates each motion; "auto" takes
-    "flow" for at least 4096 motions where these conditions hold.
+    uncertain, without [drive] and unsteady, of half-spaces of one material; "integrate" integrates
+    each motion; "auto" takes "flow" for at least 4096 motions where these conditions hold.
     rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
     rest : speed, dimensionless; with [cylinder] in m/s.  A motion ends at rest where |V| and
     R |omega| are below it and nothing drives any more.  Default: no such end.
     unsteady : whether the moment contains N dV/dt, the effect of slow changes of the speed (N is
-    the added mass).
+    the added mass).  It is allowed for half-spaces of one material only.
     rested : whether the cylinder stood still for long before the start; a number is the time for
-    which it stood still, with [cylinder] in s.
+    which it stood still, with [cylinder] in s.  It is refused for covers, for half-spaces with
+    Dundurs' constant above 0.05 unless ``coupled`` is false, and for a start in full slip.
     block : number of motions that are computed together; default: 128 MiB of motions, at most 65536
     (1048576 from a flow map).
     keep : "summaries" stores statistics alone, "all" also every motion with its inputs.
@@ -168,13 +170,18 @@ class Run:
             return "integrate"
         return "flow" if self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
 
-    @property
+    @cached_property
     def mappable(self) -> bool:
         """Whether a flow map serves: start speeds alone are uncertain, [drive] is absent or empty,
-        unsteady false.
+        unsteady false, and the bodies are half-spaces of one material.  Raises FileError for a
+        roller that is wrong.
         """
         driven = self.inputs.content.get("drive") or self.settings.unsteady
-        return not driven and set(self.inputs.uncertain) <= set(START)
+        if driven or not set(self.inputs.uncertain) <= set(START):
+            return False
+        roller = roller_of(self.path, self.inputs.filled(self.inputs.medians))
+        scene = roller if isinstance(roller, Scene) else roller.scene()
+        return scene.like_bodies
 
     @cached_property
     def fastest(self) -> float:
@@ -337,7 +344,7 @@ def read_run(path: str | PathLike[str]) -> Run:
             "run",
             "method",
             "method = 'flow': must be 'auto' or 'integrate' if the file has [drive], unsteady = "
-            "true, or uncertain inputs other than V0 and omega0",
+            "true, a cover, two materials, or uncertain inputs other than V0 and omega0",
         )
     _check_inputs(run)
     return run
@@ -498,7 +505,8 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
     pairs: dict[tuple[str, str], Any] = {}
     for a, row in section.items():
         if not isinstance(row, dict):
-            problem = f"{a} = {row!r:.40}: must be the correlation of two inputs, as V0.mu = 0.5"
+            allowed = "the correlation of two inputs, as V0.mu = 0.5 (no quotes)"
+            problem = f"{a} = {row!r:.40}: must be {allowed}"
             raise section_error(path, "correlation", a, problem)
         pairs |= {(a, b): value for b, value in row.items()}
     names = tuple(name for name in random if any(name in pair for pair in pairs))

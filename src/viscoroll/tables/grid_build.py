@@ -5,8 +5,7 @@ or ratios (:func:`spread`), and of creepage for the onset of full slip at every 
 Fields: beta, length of the stick zone divided by contact length; Q, creep force; lam, contact
 length divided by that at rest; epsilon, shift of the contact in half contact lengths; M, rolling
 moment, and its parts M_half_space and M_cylinder; delta_star, creepage at which full slip begins;
-delta_0, creepage without creep force, of a layer; zeta, time in which a point passes through half
-the contact.
+delta_0, creepage without creep force; zeta, time in which a point passes half the contact.
 """
 
 from __future__ import annotations
@@ -37,7 +36,6 @@ from ..core import (
     check_number,
     describe_value,
     described_error,
-    shape_error,
 )
 from ..laws import LawTable, bodies_as_toml, law_as_dataset, parse_law
 from ..materials import HIGHEST_ALPHA, dataset_content
@@ -195,7 +193,9 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
             "a Scene, a Cylinder or the law of half-spaces; if a body is a layer, the Cylinder",
         )
     if shape := (what if isinstance(what, Scene) else what.scene()).shape:
-        raise shape_error("what", shape, "a Scene or Cylinder without arrays as parameters")
+        found = f"has arrays of shape {shape} as parameters"
+        allowed = "a Scene or Cylinder whose parameters are numbers: make a grid for each"
+        raise described_error("what, the roller,", found, allowed)
     if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
         raise described_error(
             "alpha", "is given", "left out beside a Cylinder or a material, which determines it"
