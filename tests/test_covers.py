@@ -280,7 +280,7 @@ def test_covers_that_relax_at_nodes(monkeypatch):
 def covered():
     """A roller with a cover on a body that relaxes too, and its law."""
     roller = roller_of(THIN, vr.Material(2e7, 0.3, ONE, 0.1))
-    return roller, vr.tables.law(roller)
+    return roller, vr.tables.law(roller.replace(coupled=False))
 
 
 def test_a_law_of_a_roller_on_disk(covered, tmp_path):
@@ -402,7 +402,8 @@ def test_a_thickness_in_SI_units():
         assert close(thick.value, 0.5 * found.length / 0.01, tol.CONTACT)
         assert thick.holds
     short = dataclasses.replace(vr.Material.elastic(2e6, 0.49), thickness=0.004)
-    assert not roller_of(RIGID, short).validity(0.0).thick.holds
+    solved, fast = (roller_of(RIGID, short).replace(coupled=way) for way in (None, False))
+    assert solved.validity(0.0).thick.holds > fast.validity(0.0).thick.holds
     assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"
     # on a slope the load, and with it l0, is less: of a scene too
     tilted = roller.roll(0.0, 0.0, 0.3, slope=0.5).V[-1]

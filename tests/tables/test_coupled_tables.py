@@ -143,6 +143,9 @@ def test_grids_of_other_programs_roll(tmp_path):
     ):
         refused(beyond, "within the table")
     refused(lambda: grid.contact(0.1, delta=0.0, fields="lam"), "lam")
+    refused(lambda: grid.contact(0.1, delta=0.0, method="coupled"), "material is a grid of Q and M")
+    most, known = (vr.resistance_extrema(each).M for each in (grid, rows))
+    assert close(most, known, tol.GRID_MOTION)
     assert "beta" not in grid.contact(0.1, delta=0.0).as_dict()
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
 
@@ -181,7 +184,10 @@ def test_unlike_half_spaces_have_a_table():
     found, truth = (scene.contact(**states, method=way) for way in ("table", "coupled"))
     assert close(found.Q, truth.Q, tol.TABLE_Q, scale=0.3)
     assert close(4.0 * found.M, 4.0 * truth.M, tol.TABLE_M, scale=1.0)
-    assert list(scene.stress(0.0, 0.1, delta=0.02).keys()) == ["p"]
+    given = scene.replace(material=scene.rolling_law)
+    assert str(given.validity(0.1)) == str(scene.validity(0.1))
+    pressure, own = (one.stress(0.0, 0.1, delta=0.02).as_dict() for one in (given, scene))
+    assert pressure == own == {"p": own["p"]}
     V, delta = [0.1, 1.0], [-0.02, 0.0, 0.02]
     grid = tables.build(scene, V, delta=delta)
     found = scene.contact(np.transpose([V]), delta=delta)
@@ -208,6 +214,7 @@ def test_one_cover_takes_its_table_unless_asked_otherwise(scene):
     states = {"V": 0.1, "delta": np.linspace(-0.2, 0.2, 9)}
     assert np.array_equal(own.contact(**states).Q, scene.contact(**states).Q)
     assert abs(own.contact(**states).Q - own.uncoupled.contact(**states).Q).max() > 1e-3
+    assert str(own.validity(0.1)) == str(scene.validity(0.1))
 
 
 def test_delta_star_is_half_the_distance_of_the_onsets(scene):

@@ -198,7 +198,8 @@ UNKNOWN = Validity(
             "the quasi-steady assumption for motions is not checked: give the scene a gamma",
             "the surface speeds of the two bodies are not compared: give omega=",
             "Dundurs' constant, by which shear changes the pressure, must be 0, as for identical "
-            "materials; a scene does not state the materials: use a Cylinder",
+            "materials, unless both are solved together, as of Bodies with poisson=; a scene does "
+            "not state the materials: use a Cylinder",
             "the transit frequency (speed divided by contact length) is not compared with that of "
             "the measurements: give the Material measured=",
             "no thickness is given: the law is that of a half-space.  It applies to a layer if the "

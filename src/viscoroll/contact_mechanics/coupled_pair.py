@@ -27,7 +27,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import exp1, expi
 
-from ..core import ConvergenceError, Floats, ParameterError
+from ..core import ConvergenceError, Floats, ParameterError, described_error
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws import layer_nodes
@@ -344,9 +344,11 @@ class CoupledPair(NamedTuple):
         read.
         Returns the :class:`CoupledPair`; without a material both are half-spaces of alpha, without
         coupling.
-        Raises ParameterError for several materials.
+        Raises ParameterError for several materials, and for a grid, whose bodies are not known.
         """
         material = scene.material
+        if scene.gridded:
+            raise described_error("material", "is a grid of Q and M", "the bodies for this method")
         if np.size(scene.alpha) != 1 or (material is not None and material.shape):
             shape = np.shape(scene.alpha)
             allowed = "a single material with method='coupled': make a call for each"

@@ -404,11 +404,20 @@ class Parameters(Roller):
         return self._made
 
     @property
+    def gridded(self) -> bool:
+        """Whether the law is a grid of Q and M, which states nothing of its bodies."""
+        law = self._law
+        return law is not None and law.coupled is not None and not law.coupled.graded
+
+    @property
     def uncoupled(self) -> Self:
-        """The scene by the law without a table; the scene itself where that is its law, or where a
-        law was given.
+        """The scene by the law of its bodies without a table; the scene itself where that is its
+        law, or where a grid was given.
         """
-        return self.replace(coupled=False) if self._law is None and self.tabulated else self
+        if not self.tabulated or self.gridded:
+            return self
+        name = "alpha" if self.material is None else "material"
+        return self.replace(coupled=False, **{name: getattr(self, name)})
 
     @property
     def like_bodies(self) -> bool:
@@ -547,8 +556,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            f"shear acts on the pressure of these bodies: {why}, or make the Cylinder with "
-            "coupled=False, which neglects that effect",
+            f"the law is a table over speed and creepage: {why}, or make the Cylinder of the "
+            "bodies with coupled=False, which neglects that shear acts on the pressure",
         )
 
 

@@ -138,7 +138,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     one relaxation time it is Eq. (16) of Zobova and Goryacheva (2020), with one maximum; widely
     separated times give several.  Of layers, and of half-spaces with Dundurs' constant above 0.05,
     M is that of the fast law without creep force, also where :func:`contact` takes the coupled
-    solution.
+    solution; of a table or a grid that was given as the law it is that of the table.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     refuse_arrays(roller, scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None
-    if law.alpha == 1.0:
+    if law.alpha == 1.0 and not scene.gridded:
         return ResistanceExtrema(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
     found = branches(law, 0.0)
     V = found.u[found.extremum] / scene.kappa

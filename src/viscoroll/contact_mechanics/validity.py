@@ -359,10 +359,11 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     scene: dimensionless parameters of a roller with a cover, or with an array of covers.
     lam: contact lengths divided by l0, an array of any shape, which broadcasts with the scene.
     Returns the assumption, whose value is half the contact length divided by the thickness of the
-    thinner layer, in the broadcast shape; it holds where that of each layer is at most the limit
-    for its Poisson's ratio, from 3 at nu = 0 to 1.25 at nu = 1/2, up to which one stick zone in
-    front with slip behind is right at every creepage.  The sentence states the thickness of the
-    thinnest cover, and the limit for the cover whose limit is lowest.
+    thinner layer, in the broadcast shape; it holds where the law is a table of the coupled
+    solution, and else where that of each layer is at most the limit for its Poisson's ratio, from 3
+    at nu = 0 to 1.25 at nu = 1/2, up to which one stick zone in front with slip behind is right at
+    every creepage.  The sentence states the thickness of the thinnest cover, and the limit for the
+    cover whose limit is lowest.
     """
     cover = scene.cover
     assert cover is not None
@@ -377,10 +378,11 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     sentence = (
         f"the layer is {thickness:.3g} times as thick as the contact at rest is long; half the "
         f"contact length is up to {largest(theta):.2g} times the thickness, up to "
-        f"{np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is allowed, where the "
-        "contact sticks in front and slips behind (beyond that, use method='coupled')"
+        f"{np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is allowed with "
+        "coupled=False, where the contact sticks in front and slips behind; the table of the "
+        "coupled solution, from which states with traction are otherwise, needs no limit"
     )
-    return Assumption(holds, theta, sentence)
+    return Assumption(holds | scene.tabulated, theta, sentence)
 
 
 def assess_traction(scene: Parameters, V: Any) -> Assumption:

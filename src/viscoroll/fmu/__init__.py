@@ -363,12 +363,16 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         allowed = "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table as C"
         sentence = f"the law that is given is {found}: must be {allowed}"
         raise ParameterError("given", found, allowed, sentence)
-    law = tables.law(given)
+    law = tables.law(given)  # which warns of a Cylinder
     table = parse_law(dataset_content(law), path)
     l0 = _contact_length_of_cover(table)
     about = MODELS[model]
     starts = _start_values(about.variables, given, table, l0)
-    _warn_of_fast_law(given, table)
+    if table.cover and not isinstance(given, Cylinder):
+        warn_of_model(
+            "the FMU has the fast law, of a Cylinder with coupled=False, in place of the solution "
+            "of pressure and shear together: validity(V).traction of a Cylinder states its error"
+        )
     fmpy = import_extra("fmpy", "fmu")
     compiler = shutil.which("cc")
     if compiler is None:
@@ -406,28 +410,6 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         for name, data in content.items():
             # ZipInfo has a fixed time, so that equal content gives equal bytes
             archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
-
-
-def _warn_of_fast_law(given: Any, table: LawTable) -> None:
-    """Give a ModelWarning of bodies whose law is a table elsewhere: an FMU has the law without.
-
-    given: argument of :func:`build`; a Cylinder with ``coupled=False`` gives no warning.
-    table: :class:`LawTable`, its law; without a Cylinder, half-spaces give no warning.
-    The error that the warning states is the largest of six decades of speed, of a Cylinder.
-    """
-    error = "validity(V).traction of a Cylinder states its error"
-    if isinstance(given, Cylinder):
-        if not given.body_data.scene.tabulated:
-            return
-        speeds = given.l0 / given.T_ref * np.logspace(-3.0, 3.0, 61)
-        validity = given.replace(coupled=False).validity(speeds)
-        error = (validity.traction if table.cover else validity.bodies).sentence
-    elif table.cover is None:
-        return
-    warn_of_model(
-        "the FMU has the fast law, of a Cylinder with coupled=False, in place of the solution of "
-        f"pressure and shear together: {error}"
-    )
 
 
 def _contact_length_of_cover(table: LawTable) -> float:

@@ -239,7 +239,8 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refuse_cover(scene.uncoupled, "leave unsteady=True out, as the added mass N is not computed")
+    refused = scene if scene.like_bodies else scene.uncoupled
+    refuse_cover(refused, "leave unsteady=True out, as the added mass N is not computed")
     if not scene.like_bodies:
         sentence = (
             "unsteady = True: motions with the added mass N are computed for two bodies of "

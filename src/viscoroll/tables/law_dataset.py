@@ -26,6 +26,7 @@ from ..core import (
     check_integer,
     check_one_given,
     describe_value,
+    warn_of_model,
 )
 from ..laws import (
     AXIS_FUNCTIONS,
@@ -113,6 +114,12 @@ def law(
         anything but a Material; a Material with a thickness, as its law depends on load and radius:
         give the Cylinder; a layer too thin for its law.
 
+    Warns
+    -----
+    ModelWarning
+        Of a Cylinder with a layer, or on a half-space with Dundurs' constant above 0.05, unless it
+        has ``coupled=False``: the law is the one without a table of the coupled solution.
+
     Examples
     --------
     >>> import viscoroll as vr
@@ -140,6 +147,15 @@ def law(
             pair.covered is not None
         ):  # a layer, which the scene of the cylinder has in units of its l0
             table = replace(table, T_ref=material.T_ref, pair=pair)
+        if material.body_data.scene.tabulated:
+            # the largest error of six decades of speed
+            speeds = material.l0 / material.T_ref * np.logspace(-3.0, 3.0, 61)
+            report = material.replace(coupled=False).validity(speeds)
+            warn_of_model(
+                "the table has the fast law, of a Cylinder with coupled=False, in place of the "
+                "solution of pressure and shear together: "
+                + (report.bodies if pair.covered is None else report.traction).sentence
+            )
     else:
         table = law_table_of(material, base)
     return law_as_dataset(table, measured_errors(table))
