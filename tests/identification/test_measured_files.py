@@ -72,6 +72,8 @@ def test_columns_that_are_left_aside_are_told(here):
         ("Zeit/s;Drehzahl [U/min]", "coastdown", "omega", math.pi / 15.0),
         ("temps [ms];vitesse [m/s]", "coastdown", "t", 7.2e-3),
         ("t [s];omega [rev/s]", "coastdown", "omega", 4.0 * math.pi),
+        ("t [s];omega [cps]", "coastdown", "omega", 4.0 * math.pi),
+        ("t [s];omega [rps]", "coastdown", "omega", 4.0 * math.pi),
         ("Tiempo [s];Velocidad angular [rad/s]", "coastdown", "omega", 2.0),
         ("時間(s);速度(m/s)", "coastdown", "V", 2.0),
     ],

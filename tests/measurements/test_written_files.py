@@ -17,6 +17,9 @@ L = rubbers.LOSS
 #: unit -> how many of it are an SI unit, "" where the name needs none
 HERTZ = {
     "Hz": 1.0,
+    "hertz": 1.0,
+    "cps": 1.0,
+    "rps": 1.0,
     "kHz": 1e-3,
     "1/s": 1.0,
     "rpm": 60.0,

@@ -247,11 +247,12 @@ _POWER = re.compile(r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
 
 @lru_cache(maxsize=1)
 def registry() -> Any:
-    """Return the pint registry of this package: 1 Hz is 2 pi rad/s, 1 rpm is 2 pi/60 rad/s."""
+    """Return the pint registry of this package: 1 Hz and 1 cps are 2 pi rad/s, 1 rpm 2 pi/60."""
     import pint
 
     units: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, on_redefinition="ignore")
     units.define("hertz = 2 * pi * radian / second = Hz")
+    units.define("counts_per_second = hertz = cps")
     return units
 
 
