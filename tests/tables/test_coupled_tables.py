@@ -223,7 +223,7 @@ def test_delta_star_is_half_the_distance_of_the_onsets(scene):
     found = scene.contact(0.1, delta=[-0.03, 0.03], fields=names)
     assert np.array_equal(found.delta_star, 0.5 * (found.delta_plus - found.delta_minus))
     assert abs(found.delta_star - (found.delta_plus - found.delta_0)).max() > 1e-3
-    refused(lambda: scene.contact(0.1, delta=0.0, fields="N"), "coupled pairs and grids")
+    refused(lambda: scene.contact(0.1, delta=0.0, fields="N"), "half-spaces alone")
 
 
 def test_many_covers_in_one_call_say_what_their_tables_would_take():

@@ -17,6 +17,7 @@ from .contact_table import refuse_beyond as refuse_beyond
 from .coupled_pair import CoupledPair as CoupledPair
 from .coupled_tables import coupled_law as coupled_law
 from .coupled_tables import measure_errors as measure_errors
+from .coupled_tables import refuse_several_tables as refuse_several_tables
 from .free_rolling import FreeRolling as FreeRolling
 from .model_warnings import warn_of_contact as warn_of_contact
 from .model_warnings import warn_of_speeds as warn_of_speeds

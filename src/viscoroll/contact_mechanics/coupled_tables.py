@@ -25,6 +25,7 @@ from ..core import (
     Floats,
     ParameterError,
     check_integer,
+    described_error,
     load_kept,
     run_blocks,
     save_kept,
@@ -332,6 +333,22 @@ def is_coupled(pair: CoupledPair) -> bool:
         if abs(math.fsum(coupling)) > DUNDURS_LIMIT * math.fsum(parts):
             return True
     return False
+
+
+def refuse_several_tables(scene: Any) -> None:
+    """Raise ParameterError where states with traction would need a table for each of several bodies
+    or mu; nothing is made.
+
+    scene: :class:`.parameters.Parameters` of one or several bodies, kappa and mu.
+    """
+    several = len(scene.material) if scene.material_array is not None else 1
+    if scene.tabulated and scene._law is None and several * np.unique(scene.mu).size != 1:
+        raise described_error(
+            "material (with a thickness also R and load)" if several > 1 else "mu",
+            "has several values, each of which needs a table of pressure and shear",
+            "one value; or neglect their interaction, by coupled=False of the Cylinder (in a file "
+            "coupled = false in [cylinder])",
+        )
 
 
 def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:

@@ -24,7 +24,6 @@ from ..core import (
     check_number,
     check_one_given,
     describe_value,
-    described_error,
     format_value,
     read_only,
     shape_error,
@@ -371,19 +370,6 @@ class Parameters(Roller):
         firsts = [self.replace(material=one) for one in self.material[:1]]
         return any(map(is_coupled, map(CoupledPair.of_scene, firsts)))
 
-    def refuse_several_tables(self) -> None:
-        """Raise ParameterError where states with traction would need a table for each of several
-        bodies or mu; nothing is made.
-        """
-        several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
-        if self.tabulated and self._law is None and several * np.unique(self.mu).size != 1:
-            raise described_error(
-                "material (with a thickness also R and load)" if several > 1 else "mu",
-                "has several values, each of which needs a table of pressure and shear",
-                "one value; or neglect their interaction, by coupled=False of the Cylinder (in a "
-                "file coupled = false in [cylinder])",
-            )
-
     @property
     def rolling_law(self) -> LawTable | None:
         """Return the law of states with traction: :attr:`table`, or where :attr:`tabulated` a table
@@ -395,9 +381,9 @@ class Parameters(Roller):
         if not self.tabulated or self._law is not None:
             return self.table
         from .coupled_pair import CoupledPair
-        from .coupled_tables import stored_rows
+        from .coupled_tables import refuse_several_tables, stored_rows
 
-        self.refuse_several_tables()
+        refuse_several_tables(self)
         if self._made is None:
             rows = stored_rows(CoupledPair.of_scene(self), float(np.ravel(self.mu)[0]))
             vars(self)["_made"] = coupled_table(self.material, rows)

@@ -28,6 +28,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 import numpy as np
 
+from ..contact_mechanics import refuse_several_tables
 from ..core import (
     FileError,
     Floats,
@@ -438,7 +439,7 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
         problem = make_problem(
             roller, start, drive=Drive(**drive_of(content)), end=run.t[-1], options=options
         )
-        problem.scene.refuse_several_tables()
+        refuse_several_tables(problem.scene)
     except (ParameterError, FileError) as error:
         return error
     return None
