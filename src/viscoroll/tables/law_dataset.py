@@ -426,8 +426,8 @@ def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
     list of Check
         Of a law one for each function: the largest error, dimensionless, of the kind that
         :func:`measured_errors` states; allowed are the error that the file states times
-        2 (of a layer 64, of a table of the coupled solution 8) plus :data:`ROUNDING`.  Of a grid two for each field: its nodes, then
-        its splines (:func:`_check_grid`).
+        2 (of a layer 64, of a table of the coupled solution 8) plus :data:`ROUNDING`.  Of a grid
+        two for each field: its nodes, then its splines (:func:`_check_grid`).
 
     Raises
     ------
