@@ -1,10 +1,9 @@
 """The readers of docs/loading in their own programs, and the headers of C, against the package."""
 
-import io
 import shutil
 import subprocess
 import sys
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -108,36 +107,43 @@ int main(void) {{
 """  # noqa: E501
 SLOPES = ("dQ_dV", "dQ_domega", "dM_dV", "dM_half_space_dV", "dM_cylinder_dV")
 _STRICT = "-O2 -Wall -Wextra -Werror -pedantic"
-_HEADER = {"include": '#include "rubber.h"', "open": "law = rubber;"}
-_NETCDF = {
-    "include": '#include "vr_law_netcdf.h"',
-    "open": 'if (vr_law_open("law.nc", &law)) return 2;',
-}
-for _name, _filled, _compile, _needed in (
-    ("c", _HEADER, f"cc -std=c99 {_STRICT} -x c program -o run -lm", "command -v cc"),
-    ("c++", _HEADER, f"c++ -std=c++11 {_STRICT} -x c++ program -o run -lm", "command -v c++"),
-    (
-        "c-netcdf",
-        _NETCDF,
-        f"cc -std=c99 {_STRICT} -x c program -x none -o run $(nc-config --cflags --libs) -lm",
+_OF_HEADER = _C.format(include='#include "rubber.h"', open="law = rubber;")
+PROGRAMS |= {
+    "c": (
+        _OF_HEADER,
+        f"cc -std=c99 {_STRICT} -x c program -o run -lm && ./run < states.csv",
+        "command -v cc",
+    ),
+    "c++": (
+        _OF_HEADER,
+        f"c++ -std=c++11 {_STRICT} -x c++ program -o run -lm && ./run < states.csv",
+        "command -v c++",
+    ),
+    "c-netcdf": (
+        _C.format(
+            include='#include "vr_law_netcdf.h"',
+            open='if (vr_law_open("law.nc", &law)) return 2;',
+        ),
+        f"cc -std=c99 {_STRICT} -x c program -x none -o run $(nc-config --cflags --libs) -lm"
+        " && ./run < states.csv",
         "command -v cc && command -v nc-config",
     ),
-):
-    PROGRAMS[_name] = (_C.format(**_filled), f"{_compile} && ./run < states.csv", _needed)
+}
+
+
+shell = partial(subprocess.run, shell=True, capture_output=True, text=True, check=False)
 
 
 def output(command, folder=None):
     """What a command of the shell prints that must succeed."""
-    done = subprocess.run(
-        command, shell=True, cwd=folder, capture_output=True, text=True, check=False
-    )
+    done = shell(command, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 @cache
 def succeeds(command):
-    return not subprocess.run(command, shell=True, capture_output=True, check=False).returncode
+    return not shell(command).returncode
 
 
 def need(command):
@@ -228,14 +234,12 @@ def told_by(name, folder, states):
     need(needed)
     (folder / "program").write_text(program)
     (folder / "states.csv").write_text(states)
-    return np.loadtxt(io.StringIO(output(command, folder)), delimiter=",")
+    return np.loadtxt(output(command, folder).splitlines(), delimiter=",")
 
 
-def as_text(*columns):
-    """Columns as a file of states."""
-    file = io.StringIO()
-    np.savetxt(file, np.column_stack(columns), fmt="%.17g", delimiter=",")
-    return file.getvalue()
+def as_text(states):
+    """A file of states, each of four numbers."""
+    return "".join("{:.17g},{:.17g},{:.17g},{:.17g}\n".format(*state) for state in states)
 
 
 def assert_columns(found, exact, rel, **scales):
@@ -253,7 +257,7 @@ def test_programs_have_the_contact_of_covers(name, material, tmp_path):
     slip = slip + V * scene.contact(V, delta=0.0).delta_0
     V[1:5] = -0.0
     slip[3:5] = 0.0
-    found = told_by(name, folder_of(material, tmp_path), as_text(kappa, mu, V, slip))
+    found = told_by(name, folder_of(material, tmp_path), as_text(zip(kappa, mu, V, slip)))
     exact = scene.contact(V, omega=V + slip, fields=FIELDS[:-1])
     scales = {"beta": 1.0, "Q": mu, "epsilon": 1.0} | dict.fromkeys(FIELDS[5:8], mu / kappa)
     assert_columns(found, exact.as_dict(), tol.INTEROP_OF_COVERS, **scales)
@@ -378,18 +382,14 @@ def test_a_roller_of_c_refuses_what_is_no_number(roller, place, bad):
 def test_the_roller_of_the_page(tmp_path):
     """The program of docs/loading/README.md against roll, for the pair of its file."""
     need("command -v cc")
-    law = tables.law(read_law_source(vr.datasets.path("rubber.toml")))
-    tables.export(law, tmp_path / "rubber.h")
-    tables.save(law, tmp_path / "rubber.nc")
+    roller = read_law_source(vr.datasets.path("rubber.toml"))
+    tables.export(tables.law(roller), tmp_path / "rubber.h")
     shutil.copy(HEADERS / "vr_roll.h", tmp_path)
     page = (LOADING / "README.md").read_text().split("## Motions in C")[1]
     (tmp_path / "roll.c").write_text(page.split("```c\n")[1].split("```")[0])
     printed = output(f"cc -std=c99 {_STRICT} roll.c -o roll -lm && ./roll", tmp_path)
     speed, distance = (float(part.split()[0]) for part in printed.split(","))
-    roller = vr.Cylinder(
-        R=0.1, m=35.5, mu=0.3, load=348.0, material=vr.load_law(tmp_path / "rubber.nc")
-    )
-    m = roller.roll(2.0, 0.0, 1.0)
+    m = roller.replace(R=0.1, m=35.5, mu=0.3, load=348.0).roll(2.0, 0.0, 1.0)
     assert close(speed, m.V[-1], tol.RIGID_STEEL)
     assert close(distance, m.x[-1], tol.RIGID_STEEL)
 

@@ -30,8 +30,11 @@ FACTOR = 3.0
 
 
 @pytest.fixture(autouse=True)
-def _anew(monkeypatch):
-    """Whatever is told once is told again; what fell back is forgotten."""
+def _anew(tmp_path, monkeypatch):
+    """A cache folder of each test; whatever is told once is told again; what fell back is
+    forgotten.
+    """
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
     cache_module.warn_once.cache_clear()
     monkeypatch.setattr(deferred_compilation, "_deferring", True)
     yield
@@ -59,7 +62,6 @@ def power(x, n):
 @pytest.fixture
 def kernels(tmp_path, monkeypatch):
     """The three functions above as kernels, compiled afresh."""
-    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
     for function in (power, square, cubed):
         monkeypatch.setitem(globals(), function.__name__, kernel(function))
     return tmp_path
@@ -87,8 +89,6 @@ def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
         assert kernel(cubed.py_func)(2.0) == 8.0
     monkeypatch.delattr(deferred_compilation.EntryPipeline, "compile_extra")
     stored.unlink()
-    lock = FileLock(f"{stored}.lock", thread_local=False)
-    lock.acquire()
 
     def store():
         stored.write_bytes(content)
@@ -131,9 +131,8 @@ def scaled(x):
 
 
 @pytest.fixture
-def cache(tmp_path, monkeypatch):
-    """A cache folder of its own that holds ``scaled`` for one signature."""
-    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
+def cache(tmp_path):
+    """A cache folder that holds ``scaled`` for one signature."""
     assert fresh() == 0
     return tmp_path / f"kernels-{cache_module.sources_digest()}"
 
@@ -164,10 +163,9 @@ def third(array):
     return array[2]
 
 
-def test_settings_that_machine_code_follows_have_code_of_their_own(tmp_path, monkeypatch, capsys):
+def test_settings_that_machine_code_follows_have_code_of_their_own(monkeypatch, capsys):
     """What was compiled without checks is not what a process that asks for them is given.  A
     process that compiles says so once."""
-    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("VISCOROLL_QUIET", "")
     monkeypatch.setattr(cache_folder, "announced", False)
     two = np.arange(4.0)[:2]
