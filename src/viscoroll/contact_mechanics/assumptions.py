@@ -292,12 +292,12 @@ def assess_position(epsilon: Any) -> Assumption:
     """
     ahead = largest(epsilon)
     where = (
-        "the whole contact lies ahead of the axis, which is allowed"
+        "the whole contact lies ahead of the axis, which is no fault: the theory allows it"
         if ahead > 1.0
         else "the axis is above the contact"
     )
     return Assumption(
-        epsilon <= 1.0, epsilon, f"epsilon (shift of the contact) = {ahead:.2g}: {where}"
+        epsilon <= 1.0, epsilon, f"epsilon (shift in half contact lengths) = {ahead:.2g}: {where}"
     )
 
 

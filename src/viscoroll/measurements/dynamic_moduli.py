@@ -187,7 +187,9 @@ class KramersKronig(NamedTuple):
     median: float
 
 
-def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS) -> _Data:
+def data_of(
+    kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS, place: str = ""
+) -> _Data:
     """Check measured columns and return them as a curve, sorted by frequency or time.
 
     kind : :class:`Curve` or :class:`Relaxation`.
@@ -195,6 +197,7 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS)
         each without a unit or of the dimension in :data:`UNITS`: omega in rad/s, t in s; moduli
         without a unit may be in any, as long as it is the same.
     fewest : least number of points.
+    place : words for the temperature of the curve, "" if it is the only one.
     Returns the curve, of the class ``kind``, in ascending order; points of one frequency or time
     stay in the order in which they were given.
 
@@ -216,8 +219,8 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS)
     if values[0].size < fewest:
         raise described_error(
             names[0],
-            f"has {values[0].size} points in a curve",
-            f"at least {fewest} points in each curve (at each temperature, if there are several)",
+            f"has too few points{place}, {values[0].size}",
+            f"at least {fewest} points{' at each temperature' * bool(place)}",
         )
     order = np.argsort(values[0], kind="stable")
     return kind(*(column[order] for column in values))

@@ -340,7 +340,8 @@ def fit_relaxation(
         raise described_error(
             "relaxation",
             "is not given",
-            "given beside t; or give a record of read_relaxation alone",
+            "the second argument, fit_relaxation(t, relaxation); or give the result of "
+            "read_relaxation alone, as fit_relaxation(vr.read_relaxation('relax.csv'))",
         )
     curve = data_of(Relaxation, t, relaxation)
     first, *_, last = curve.relaxation.tolist()  # data_of has sorted them by time

@@ -353,11 +353,10 @@ def master_curve(
     else:
         base = default_reference(temperatures, []) if base is None else base
         nearest(base, temperatures)
-        parts = (
-            Curve(*(column[sets.of_point == n] for column in whole))
-            for n in range(temperatures.size)
-        )
-        curves = (thinned(data_of(Curve, *part, fewest=2)) for part in parts)
+        curves = []
+        for n, T in enumerate(temperatures.tolist()):
+            part = [column[sets.of_point == n] for column in whole]
+            curves.append(thinned(data_of(Curve, *part, fewest=2, place=f" at {T:g} °C")))
         logs, mismatch, freedom = _shifts_by_overlap(
             [_LogCurve(curve, on) for curve in curves], temperatures
         )

@@ -240,15 +240,15 @@ _CYLINDER_NUMBERS = ("R", "m", "mu", "load")
 #: Attribute ``comment`` of a grid.
 COMMENT = (
     "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, "
-    "delta_star, delta_0 and beta are even in V; M, its two parts and Q(V, delta) are odd. Let d = "
-    "delta - delta_0(V); a grid without delta_0 has delta_0 = 0, beta even in d, and Q odd in d. "
-    "beta has a kink at |d| = delta_star(V), in a grid with delta_0 at other d of either sign; "
-    "beyond the kink the whole contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. A "
-    "grid is for plots and for look-up blocks of other programs. Do not use it where the onset of "
-    "full slip decides a result: look-up smooths the kink, and spline_error and linear_error of Q "
-    "and beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact "
-    "at every V, delta, kappa and mu, and has a tenth of the size; law.nc of make tables holds "
-    "every alpha."
+    "delta_star, delta_0 and beta are even in V; M, its two parts and Q(V, delta) are odd. Let d "
+    "= delta - delta_0(V). In a grid without delta_0, delta_0 = 0, beta is even and Q odd in d, "
+    "and full slip begins at |d| = delta_star(V). In a grid with delta_0 it begins at one d of "
+    "either sign, neither of them delta_star. There beta has a kink; beyond it beta = 0, |Q| = mu"
+    " P. epsilon may exceed 1. A grid is for plots and for look-up blocks of other programs. Do "
+    "not use it where the onset of full slip decides a result: look-up smooths the kink, and "
+    "spline_error and linear_error of Q and beta, which are absolute, occur there. The file of a "
+    "law (viscoroll tables law) is exact at every V, delta, kappa and mu, and has a tenth of the "
+    "size; law.nc, which make tables writes in the sources of viscoroll, holds every alpha."
 )
 
 

@@ -48,7 +48,7 @@ KIND = "viscoroll_table"
 #: Kind of the file of a grid.
 GRID = "grid"
 #: What a user can do about a file that is not as it was written.
-_REBUILD = "write the file again by vr.tables.save or `viscoroll tables`"
+_REBUILD = "write the file again by vr.tables.save, `viscoroll tables law` or `tables build`"
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer
 #: and of the coupled solution alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
@@ -258,7 +258,9 @@ def load(path: str | PathLike[str]) -> Dataset:
         )
     except Exception as error:  # libraries raise errors of many kinds
         raise FileError(
-            path, f"is damaged or is not a law or grid in netCDF-4; {_REBUILD}"
+            path,
+            "is not a netCDF-4 file of a law or grid, or is damaged: give such a file, or "
+            f"{_REBUILD}",
         ) from error
     check_content(table, path)
     table.encoding["source"] = str(path)  # for messages, as where xarray reads a file
