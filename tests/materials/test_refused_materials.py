@@ -315,7 +315,7 @@ REFUSED = [
     *each(
         partial(vr.fit_relaxation, STEP),
         {
-            "relaxation is not given: must be given beside t": {},
+            "relaxation is not given: must be the second argument, fit_relaxation(t,": {},
             "temperature | a single number": {
                 "relaxation": 1.0 + np.exp(-STEP),
                 "temperature": [20.0],
