@@ -136,7 +136,7 @@ def test_vertical_shift_scales_the_moduli(base):
     assert close(found.C_rr[0], hot.contact(3.0, delta=0.0).C_rr, 1e-12)
     assert balanced(found, **MILD)
     limit = roller.heat_limit(found.temperature[0], V=3.0, **MILD)
-    assert close(limit.load, roller.load, 1e-6)
+    assert close(limit.load, roller.load, tol.HEAT_LIMIT)
 
 
 def test_cover_follows_its_own_law():
@@ -183,16 +183,16 @@ def test_units_are_converted():
     assert close(
         pair.pair_temperatures(5.0, **both).loss,
         pair.pair_temperatures(5.0, **both | {"ambient": [20.0] * 2}).loss,
-        1e-9,
+        tol.HEAT_UNITS,
     )
     then = {"t": [60.0, 120.0], "capacity": 9e3}
     speeds = vr.Schedule(pint.Quantity([0.0, 1.0], "min"), pint.Quantity([0.0, 18.0], "km/h"))
     course = ROLLER.warming(speeds, **given, **then)
-    assert close(course.V, [5.0, 5.0], 1e-15)
+    assert close(course.V, [5.0, 5.0], tol.SCENE)
     assert close(
         course.temperature,
         ROLLER.warming(vr.Schedule([0.0, 60.0], [0.0, 5.0]), **WARM, **then).temperature,
-        1e-9,
+        tol.HEAT_UNITS,
     )
     mass = {"ambient": 20.0, "conductance": pint.Quantity(6.0, "kg")}
     refused(lambda: ROLLER.temperature(5.0, **mass), "must be in W")

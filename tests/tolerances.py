@@ -542,6 +542,11 @@ COVER_ON_STEEL = 1e-3
 HEAT_BALANCE = 1e-10
 #: Closed forms of a constant shift: roundings, after the balance was refined with the shift itself.
 HEAT_CLOSED = 1e-12
+#: The same call in other units: roundings of the conversion, which the search for the balance
+#: enlarges.
+HEAT_UNITS = 1e-9
+#: The load at which a temperature is reached that was found at that load.
+HEAT_LIMIT = 1e-6
 #: A warming against closed forms and its end, at rtol 1e-9 a step.
 WARMING = 1e-7
 #: Turning points: the equilibria on either side of that relative distance differ in number.

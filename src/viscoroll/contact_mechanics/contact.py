@@ -224,8 +224,7 @@ def contact(
     like = scene.like_bodies
     cover = scene.tabulated or isinstance(scene.material, Cover)
     names = field_names(fields, slopes, method, like=like, si=scale.si, cover=cover)
-    law = scene._law
-    if fields is None and law is not None and law.coupled is not None and not law.coupled.graded:
+    if fields is None and scene.gridded:
         names = tuple(name for name in names if name not in NOT_IN_GRIDS)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])

@@ -317,7 +317,7 @@ def evaluate_contact(
         arrays["alpha"] = np.arange(len(material), dtype=float)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
-        if not material.coupled.graded:
+        if material.gridded:
             refuse_fields(NOT_IN_GRIDS, names, "left out: a grid contains only Q and M")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     # of a table the kernel writes the distance of one onset from delta_0 in place of half the width

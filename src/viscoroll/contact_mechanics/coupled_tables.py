@@ -25,7 +25,6 @@ from ..core import (
     Floats,
     ParameterError,
     check_integer,
-    described_error,
     load_kept,
     run_blocks,
     save_kept,
@@ -33,7 +32,7 @@ from ..core import (
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
 from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade
-from ..materials import lock_array
+from ..materials import lock_array, several_tables_error
 from .assumptions import DUNDURS_LIMIT
 from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth, refuse_unsolved
 
@@ -343,12 +342,8 @@ def refuse_several_tables(scene: Any) -> None:
     """
     several = len(scene.material) if scene.material_array is not None else 1
     if scene.tabulated and scene._law is None and several * np.unique(scene.mu).size != 1:
-        raise described_error(
-            "material (with a thickness also R and load)" if several > 1 else "mu",
-            "has several values, each of which needs a table of pressure and shear",
-            "one value; or neglect their interaction, by coupled=False of the Cylinder (in a file "
-            "coupled = false in [cylinder])",
-        )
+        name = "material (with a thickness also R and load)" if several > 1 else "mu"
+        raise several_tables_error(name, "one value")
 
 
 def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:

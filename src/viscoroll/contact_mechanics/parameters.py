@@ -391,9 +391,8 @@ class Parameters(Roller):
 
     @property
     def gridded(self) -> bool:
-        """Whether the law is a grid of Q and M, which states nothing of its bodies."""
-        law = self._law
-        return law is not None and law.coupled is not None and not law.coupled.graded
+        """Whether the law that was given is a grid (:attr:`.LawTable.gridded`)."""
+        return self._law is not None and self._law.gridded
 
     @property
     def uncoupled(self) -> Self:
@@ -530,7 +529,7 @@ def resolve_model(
 
 
 def refuse_cover(scene: Parameters, why: str) -> None:
-    """Raise ParameterError where shear acts on the pressure of the bodies of ``scene``.
+    """Raise ParameterError where a body of ``scene`` is a layer, or its law a table or a grid.
 
     ``why``: end of the message, the reason why the function does not take one.
     """

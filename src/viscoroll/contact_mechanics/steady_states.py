@@ -309,7 +309,7 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     rows[Field.V] = V
     rows[Field.DELTA] = delta
     rows[2:] = contacts.fields(V, delta, *_ROWS)
-    if contacts.law.coupled is not None and not contacts.law.coupled.graded:
+    if contacts.law.gridded:
         rows[Field.BETA] = np.nan
     speed = V
     if np.minimum.reduce(V, initial=_LEAST_SPEED) < _LEAST_SPEED:

@@ -153,7 +153,7 @@ class Result:
         return [field.name for field in fields(self) if not field.name.startswith("_")]  # type: ignore[arg-type]
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self.keys():
+        if name not in self:
             raise KeyError(f"{name!r} is not in this result: it contains {', '.join(self.keys())}")
         return getattr(self, name)
 

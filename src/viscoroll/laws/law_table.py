@@ -280,6 +280,11 @@ class LawTable:
         return self.cover is None and self.coupled is None
 
     @cached_property
+    def gridded(self) -> bool:
+        """Whether the law is a grid of Q and M, which states nothing of its bodies."""
+        return self.coupled is not None and not self.coupled.graded
+
+    @cached_property
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`.law_record.Law`)."""
         made = pack_record(

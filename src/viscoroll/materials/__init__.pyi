@@ -48,6 +48,7 @@ from .pair import describe_body as describe_body
 from .pair import effective_modulus as effective_modulus
 from .pair import layer_excess as layer_excess
 from .pair import local_coupling as local_coupling
+from .pair import several_tables_error as several_tables_error
 from .prony import Block as Block
 from .prony import Prony as Prony
 from .prony import series_of_alpha as series_of_alpha

@@ -296,12 +296,7 @@ class Pair:
         limit: Dundurs' constant up to which bodies count as uncoupled, dimensionless.
         """
         if type(law) is Bodies and law.poisson is None and self.most_coupled > limit:
-            raise described_error(
-                "nu",
-                "has several values, each of which needs a table of pressure and shear",
-                "one number; or neglect their interaction, by coupled=False of the Cylinder (in a "
-                "file coupled = false in [cylinder])",
-            )
+            raise several_tables_error("nu", "one number")
 
     @cached_property
     def dundurs(self) -> tuple[Any, Any]:
@@ -340,6 +335,20 @@ def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
     Returns E' in the unit of E, a number or an array.
     """
     return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
+
+
+def several_tables_error(name: str, one: str) -> ParameterError:
+    """Return the error of a parameter with several values, each of which needs the coupled
+    solution.
+
+    name: name of the parameter; one: words for what it must be, as "one number".
+    """
+    return described_error(
+        name,
+        "has several values, each of which needs a table of pressure and shear",
+        f"{one}; or neglect their interaction, by coupled=False of the Cylinder (in a file "
+        "coupled = false in [cylinder])",
+    )
 
 
 def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:

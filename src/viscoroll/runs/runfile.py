@@ -52,7 +52,6 @@ from ..motion import (
     output_times,
 )
 from ..presets import check_sections, locate_error
-from ..rollers import Scene
 from ..sampling import Design
 from .run_rollers import RUN_SECTIONS, Rollers, drive_of, roller_of
 from .uncertain_inputs import Inputs, inputs_in, inputs_of
@@ -181,8 +180,7 @@ class Run:
         if driven or not set(self.inputs.uncertain) <= set(START):
             return False
         roller = roller_of(self.path, self.inputs.filled(self.inputs.medians))
-        scene = roller if isinstance(roller, Scene) else roller.scene()
-        return scene.like_bodies
+        return roller.scene().like_bodies
 
     @cached_property
     def fastest(self) -> float:

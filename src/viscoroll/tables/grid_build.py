@@ -192,7 +192,7 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
             describe_value(what),
             "a Scene, a Cylinder or the law of half-spaces; if a body is a layer, the Cylinder",
         )
-    if shape := (what if isinstance(what, Scene) else what.scene()).shape:
+    if shape := what.scene().shape:
         found = f"has arrays of shape {shape} as parameters"
         allowed = "a Scene or Cylinder whose parameters are numbers: make a grid for each"
         raise described_error("what, the roller,", found, allowed)
