@@ -83,10 +83,11 @@ same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 	touch $@
 
 test: setup .venv/warm ## the test suite: what users meet
-	$(BIN)/pytest -n 2 --dist worksteal --ignore tests/evidence $(TEST)
+	$(BIN)/pytest -n 2 --dist worksteal -m "not long" --ignore tests/evidence $(TEST)
 
 evidence: setup ## tests of what a release rests on: pipeline stages at small sizes, clusters, results that are kept
 	$(BIN)/pytest -n 2 --dist worksteal tests/evidence
+	$(BIN)/pytest -n 2 --dist worksteal -m long --ignore tests/evidence
 
 SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
 debian-lists:
@@ -119,8 +120,8 @@ docs: .venv/docs ## the site, every example of it run: docs/_build/html/index.ht
 	  || $(INSTALL) -e '.[docs]'
 	touch $@
 
-test-site: .venv/docs ## build the site without a warning; every public name and every picture is there
-	$(BIN)/pytest -rs tests/evidence/test_site.py
+test-site: .venv/docs ## build the site without a warning; every public name and every picture is there, every example runs
+	$(BIN)/pytest -rs tests/evidence/test_site.py tests/docs tests/cli
 
 site-tools:
 	command -v chromium chromium-browser google-chrome >/dev/null || { $(SUDO) apt-get update -qq; \

@@ -14,6 +14,7 @@ from calls import STEEL
 from closeness import close
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from long_cases import long
 from many import assert_covers_are_each
 from refusals import refused
 
@@ -67,6 +68,7 @@ def free(scene, V):
     return scene.contact(V, delta=scene.contact(V, delta=0.0).delta_0)
 
 
+@pytest.mark.long
 def test_a_thick_cover_is_a_half_space():
     """At speeds where the memory, V T over l0, does not reach the core; beside a body that relaxes
     without slip.
@@ -89,7 +91,7 @@ def test_a_thick_cover_is_a_half_space():
     assert list(found.keys()) == ["p"]
 
 
-@pytest.mark.parametrize("scene", ALL)
+@pytest.mark.parametrize("scene", [*ALL[:2], *long(*ALL[2:])])
 def test_rows_are_the_solve(scene):
     """With twice as many terms of the pressure; slow and fast these lose digits of epsilon."""
     cover = scene.material
@@ -116,7 +118,7 @@ def test_rows_are_the_solve(scene):
         assert close(full[name] - found[name], change, rel, scale=1.0, what=name)
 
 
-@pytest.mark.parametrize("scene", [*SCENES, scene_on(vr.Cover(WIDE, nu=0.5, thickness=0.2))])
+@pytest.mark.parametrize("scene", [*SCENES, *long(scene_on(vr.Cover(WIDE, nu=0.5, thickness=0.2)))])
 def test_rows_join(scene):
     """Nothing jumps at the ends of octaves, also where rates are eight decades apart."""
     V = np.array([[1.0 - 1e-15], [1.0 + 1e-15]]) * 2.0 ** np.arange(-20, 90) / KAPPA
@@ -166,6 +168,7 @@ def test_a_thin_compressible_cover_is_a_foundation():
     st.floats(0.05, 1.0),
     st.sampled_from(["cylinder", "base"]),
 )
+@pytest.mark.long
 def test_any_cover(nu, thickness, strength, time, part, on):
     """Shorter than the half-space's contact, which resists; traction within friction, rising with
     creep from that of free rolling, where it is 0; backwards the mirror image."""
@@ -257,11 +260,13 @@ ELASTIC = (
 
 
 @pytest.mark.parametrize("cover", ELASTIC)
+@pytest.mark.long
 def test_a_thickness_each(cover):
     """Between the nodes of elastic covers; of covers that relax: tests/evidence/test_layer.py."""
     assert_covers_are_each(cover)
 
 
+@pytest.mark.long
 def test_covers_that_relax_at_nodes(monkeypatch):
     """At the two nodes of an octave, instead of 14, nothing is interpolated; one cylinder a load
     are covers of one thickness/l0 each.
@@ -283,6 +288,7 @@ def covered():
     return roller, vr.tables.law(roller.replace(coupled=False))
 
 
+@pytest.mark.long
 def test_a_law_of_a_roller_on_disk(covered, tmp_path):
     """It keeps its bodies, and is refused where the load makes another thickness/l0."""
     roller, dataset = covered
@@ -378,6 +384,7 @@ def test_equilibria(scene):
     assert close([rest.delta[0], slow.delta[0]], still.delta, tol.COVER_REST)
 
 
+@pytest.mark.long
 def test_a_thickness_in_SI_units():
     """A Material's thickness over l0 is that of the Cover; steel under it is nearly rigid; validity
     tells of it.

@@ -95,6 +95,7 @@ def test_shift_factors_are_found(points, noise, allowed):
     assert again.prony == fit.prony
 
 
+@pytest.mark.long
 def test_times_are_those_at_the_reference():
     """All modes times a_T, by functions whose constants are of any temperature and by factors in
     either order.  A shift means a reference: T0 and the temperature of the factor 1, where they are
@@ -125,6 +126,7 @@ def test_times_are_those_at_the_reference():
     assert vr.fit_prony(*CURVES, temperature=TEMPERATURES, shift=shift).shifts.reference == -10.0
 
 
+@pytest.mark.long
 def test_temperatures_as_they_were_measured():
     """Within 0.5 K of a neighbour points are of one set, and the report says so; factors go by the
     sets.
@@ -285,6 +287,7 @@ def test_relaxation_and_dynamic_data_give_one_material():
 # --- files ---
 
 
+@pytest.mark.long
 def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ():
     omega, storage, loss = vr.read_dma(DATA / "materials/pyvisco_freq_user_master.csv")
     assert omega.size == 206

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from long_cases import long
 from refusals import each, refused
 from scipy.integrate import trapezoid
 
@@ -123,7 +124,11 @@ def test_heat_of_slip_and_given_loads():
 
 
 @pytest.mark.parametrize(
-    "base", [ROLLER.base, vr.Material.elastic(5e7, 0.3), vr.Material.elastic(3e6, 0.49)]
+    "base",
+    [
+        ROLLER.base,
+        *long(vr.Material.elastic(5e7, 0.3), vr.Material.elastic(3e6, 0.49)),
+    ],
 )
 def test_vertical_shift_scales_the_moduli(base):
     """The equilibrium has the loss of the material whose moduli and times are those at its
@@ -139,6 +144,7 @@ def test_vertical_shift_scales_the_moduli(base):
     assert close(limit.load, roller.load, tol.HEAT_LIMIT)
 
 
+@pytest.mark.long
 def test_cover_follows_its_own_law():
     """Free rolling of a cover is steady rolling without torque, whose loss is in balance, by the
     coupled solution.
@@ -409,6 +415,7 @@ def test_strain_of_the_contact():
 
 
 @pytest.mark.usefixtures("two_speeds")
+@pytest.mark.long
 def test_fit_at_the_strain_of_the_contact():
     """Of moduli that fall with a power of the strain the fit has the strain that its own contact
     has.

@@ -174,6 +174,7 @@ def expected(maps_of_this_file):
 # --- threads ---
 
 
+@pytest.mark.long
 def test_called_from_several_threads_at_once(expected, own_maps):
     """The same bits as one call alone, with nothing at hand when they start."""
     together = Barrier(2)

@@ -17,6 +17,7 @@ pytestmark = pytest.mark.filterwarnings(
 
 
 @pytest.mark.usefixtures("here")
+@pytest.mark.long
 def test_a_run_without_values():
     """A panel without values says so; all values at one point are one bar."""
     for n, (start, wanted, empty) in enumerate(

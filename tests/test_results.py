@@ -46,9 +46,7 @@ def results():
 
 
 def test_each_shows_itself(results, tmp_path):
-    """A short text, HTML, a dataset with units that a file keeps, and a figure with labelled
-    axes.
-    """
+    """A short text, HTML, and a dataset with units that a file keeps."""
     for name, result in results.items():
         assert len(repr(result).splitlines()) < 25, name
         assert result._repr_html_().startswith("<"), name
@@ -59,6 +57,11 @@ def test_each_shows_itself(results, tmp_path):
         write_dataset(data, path)
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as stored:
             xr.testing.assert_equal(stored.load(), data)
+
+
+@pytest.mark.long
+def test_each_is_drawn(results):
+    for name, result in results.items():
         figure = result.plot()
         # takes most of the time; figures of the program have theirs
         figure.set_layout_engine("none")

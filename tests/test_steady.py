@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from long_cases import long
 from refusals import refused
 from scipy.optimize import brentq
 
@@ -262,17 +263,23 @@ def brute_feedback(scene, force, torque, V):
 
 
 COVER = series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0, on="base"))
-FED = {
-    "an alpha": SCENE,
-    "a series": series_scene(TWO, mu=0.02),
-    "unlike bodies": series_scene(UNLIKE, mu=0.02),
-    "a cover": COVER,
-    "its table": COVER.replace(coupled=None),
-    "on the cylinder": series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0)),
-}
+#: by the fast law, by the table of the coupled solution, and with the cover on the cylinder
+COVERED = (
+    COVER,
+    COVER.replace(coupled=None),
+    series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0)),
+)
 
 
-@pytest.mark.parametrize("scene", FED.values(), ids=FED)
+@pytest.mark.parametrize(
+    "scene",
+    [
+        SCENE,
+        series_scene(TWO, mu=0.02),
+        series_scene(UNLIKE, mu=0.02),
+        *long(*COVERED),
+    ],
+)
 def test_feedback_on_omega_misses_none(scene):
     """With both loads, one load or the other dependent on omega, under random values and gains."""
     rng = np.random.default_rng(3)

@@ -137,6 +137,7 @@ def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
 
 
 @pytest.mark.parametrize("command", ["", "tables", "material", *COMMANDS])
+@pytest.mark.long
 def test_example_of_help_runs(run, here, command):
     (here / "run.toml").write_text(UNCERTAIN)
     _, *examples = run(f"{command} --help").partition("example:")[2].split("\n  viscoroll ")

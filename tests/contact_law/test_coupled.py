@@ -181,6 +181,7 @@ def random_pair(rng):
     return CoupledPair(tuple(bodies)), *10.0 ** rng.uniform([-6.0, -1.7], [6.0, 0.0])
 
 
+@pytest.mark.long
 def test_random_pairs_are_solved_and_refined_meshes_agree():
     rng = np.random.default_rng(50)
     for _ in range(8):

@@ -9,6 +9,7 @@ import pytest
 import tolerances as tol
 from closeness import close
 from drives import solved
+from long_cases import long
 
 import viscoroll as vr
 from pipeline.evidence.measure import covers
@@ -16,7 +17,7 @@ from pipeline.evidence.measure import covers
 ONE, THREE = (covers.MATERIALS[name] for name in ("one", "three"))
 
 
-some = pytest.mark.parametrize("index", [0, 5, 15, 20])
+some = pytest.mark.parametrize("index", [0, 5, *long(15, 20)])
 
 
 @some
@@ -49,6 +50,7 @@ def test_onsets_lie_unlike_far_from_free_rolling(index):
         assert close(slips.Q, [sign * scene.mu * ends] * 2, tol.COVER_ENDS)
 
 
+@pytest.mark.long
 def test_the_same_nip_has_the_same_losses():
     """Named from the other side V and omega change places; speeds of both names differ by creepage,
     here 1e-6.

@@ -56,6 +56,7 @@ SHOWN = shown_on_the_site()
     "ignore::viscoroll.ModelWarning"
 )  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("name", MODULES)
+@pytest.mark.long
 def test_examples_of_docstrings(name, here):
     """Every line of every Examples section, with its output; files go to a temporary folder."""
     options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE

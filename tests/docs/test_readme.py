@@ -48,6 +48,7 @@ def test_first_pages_run(page, capsys):
 
 
 @pytest.mark.usefixtures("here")
+@pytest.mark.long
 def test_offline_and_runtime(capsys):
     run_page("offline_runtime")
     worst, way = map(float, capsys.readouterr().out.split())

@@ -210,6 +210,7 @@ def test_roller_by_co_simulation_is_that_of_roll(built, name):
     assert_rolls(built(name), CYLINDERS[name], THROWS[name])
 
 
+@pytest.mark.long
 def test_a_cover_rolls_by_its_law_on_disk(tmp_path):
     """It starts at a load that is its own; another load would be another law."""
     unlike = CYLINDERS["unlike"]
@@ -528,6 +529,7 @@ def test_an_instance_that_is_none_says_why(built, name, model, change, said):
 
 
 @pytest.mark.filterwarnings("always::viscoroll.ModelWarning")  # printed by the program
+@pytest.mark.long
 def test_program(tmp_path, monkeypatch, capsys):
     """The same bytes for the same cylinder, so that they can be kept."""
     monkeypatch.setattr(fmu, "_FLAGS", ("-shared", "-fPIC"))  # nothing is computed

@@ -113,6 +113,7 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 SLOWEST = vr.Resistance([1e-4, 2e-4, 4e-4], sigma=3e-5)
 
 
+@pytest.mark.long
 def test_slow_rolling_tells_a_product_alone():
     unknown = {"E_1": (4.5, 18.0), "T_ref": (5e-4, 2e-3)}
     fit = fit_of("mu", SLOWEST, unknown)
@@ -127,6 +128,7 @@ def test_slow_rolling_tells_a_product_alone():
     assert "E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
 
 
+@pytest.mark.long
 def test_a_product_that_a_range_limits_is_told():
     """M at one speed tells a product; E and E/T_ref end where T_ref comes to an end of its
     range.
@@ -292,6 +294,7 @@ def test_a_dataset_and_a_figure_hold_all_of_it(fit):
     assert "chi2" in fit._repr_html_()
 
 
+@pytest.mark.long
 def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
     """V of a coast-down has a second valley, of a short time and a large strength, in which this
     start lies.
@@ -306,6 +309,7 @@ def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
 @pytest.mark.parametrize(
     ("points", "least"), [(40, tol.IDENTIFY_COVERAGE_FEW), (200, tol.IDENTIFY_COVERAGE)]
 )
+@pytest.mark.long
 def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
     """Noise of an autoregression with 0.6, also of few points: by all points 70 % of the intervals
     would; the report states the points.
@@ -331,6 +335,7 @@ def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
     assert wide[0] < one - 1.5 * fit.stderr["E"] < one + 1.5 * fit.stderr["E"] < wide[1]
 
 
+@pytest.mark.long
 def test_a_roller_on_a_cover_is_pulled_without_torque_but_that_of_its_bearing():
     """The force is the work over distance of a motion at that speed; M at creepage 0 is 12 %
     larger.

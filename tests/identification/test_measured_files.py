@@ -17,6 +17,7 @@ from viscoroll.measurements.identify import read_measurements
 from viscoroll.measurements.unknowns import cylinder_of
 
 
+@pytest.mark.long
 def test_the_program_reports(here, capsys):
     """The case of the suffix does not matter."""
     measurements(here)

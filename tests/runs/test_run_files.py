@@ -12,6 +12,7 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
+from long_cases import long
 from refusals import refused
 from run_files import CERTAIN, FILES, PAPER, run_of
 
@@ -141,7 +142,10 @@ def test_a_block_is_rolled_as_an_ensemble(file):
 @pytest.mark.parametrize(
     "file",
     # others say no more by their numbers
-    ["a preset", "compliances", "rubber on rubber", "own times", "a driven roller", "unsteady"],
+    [
+        *("a preset", "compliances", "own times", "unsteady"),
+        *long("rubber on rubber", "a driven roller"),
+    ],
 )
 def test_the_identity_is_of_every_number_but_n(file):
     """Of the file, whatever is told beside it; with blocks of one size a run is the same for any
@@ -165,7 +169,7 @@ def test_the_identity_is_of_every_number_but_n(file):
             continue
 
 
-@pytest.mark.parametrize("file", ["numbers", "driven", "a driven roller"])
+@pytest.mark.parametrize("file", ["numbers", *long("driven", "a driven roller")])
 def test_a_store_holds_the_run(file):
     """And what is exported of it: columns, what drove them, their units, their summaries."""
     run = run_of(FILES[file].replace("[run]", "[run]\nquantiles = [0.5]"))

@@ -33,6 +33,7 @@ quantiles = [0.1, 0.5, 0.9]
 
 @pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("keep", ["all", "summaries"])
+@pytest.mark.long
 def test_a_store_shows_itself(keep):
     """And its summaries as a table."""
     run_ensemble(run_of(RUN.replace("KEEP", keep)), "s.zarr", threads=1)

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from functools import partial
 
 import pytest
+from long_cases import long
 from places import content
 from processes import begun
 from refusals import refused
@@ -89,7 +90,7 @@ PARTS = [
 ]
 
 
-@pytest.mark.parametrize("change", ["flip", "truncate", "remove"])
+@pytest.mark.parametrize("change", ["flip", *long("truncate", "remove")])
 def test_damage_is_found_and_put_right(run, tmp_path, whole, change):
     """At its own time, to each kind of file: values and records of a block, summaries, metadata."""
     store = shutil.copytree(whole, tmp_path / "store.zarr")
@@ -133,6 +134,7 @@ def disk_for(writes, monkeypatch):
             yield
 
 
+@pytest.mark.long
 def test_a_full_disk(run, tmp_path, whole, monkeypatch):
     """At any of the writes: one line, and the same command goes on."""
     store = tmp_path / "store.zarr"
@@ -184,6 +186,7 @@ def test_a_run_grows(smaller, run, whole):
     assert len(open_run(smaller)) == 1200
 
 
+@pytest.mark.long
 def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch):
     """Until then it is the smaller store or one that is not finished, never one of fewer motions
     than it says.
@@ -228,6 +231,7 @@ def test_a_run_that_cannot_grow_is_refused(tmp_path, before, now, words):
     assert content(store) == was
 
 
+@pytest.mark.long
 def test_a_killed_run_goes_on(run, tmp_path, whole):
     """SIGKILL of everything: what is done stays as it is, and at most one block a worker is made
     again.
@@ -249,6 +253,7 @@ def _heeding():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.long
 def test_an_interrupt_answers_at_once(tmp_path):
     """Ctrl-C in the midst of long blocks: within seconds on a busy machine, what is kept and how to
     go on.

@@ -128,6 +128,7 @@ def test_losses_in_slip_of_free_rolling_are_not_below_zero(scene):
     assert close(loss.slip + loss.half_space + loss.cylinder, power, tol.BALANCE_OF_STEADY)
 
 
+@pytest.mark.long
 def test_grids_of_other_programs_roll(tmp_path):
     rows = scene_of(ONE)
     V = tables.spread(1e-4, 10.0, 200, "log")

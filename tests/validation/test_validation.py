@@ -21,6 +21,7 @@ pytestmark = pytest.mark.filterwarnings(
 )  # the paper's own scene is beyond the model
 
 
+@pytest.mark.long
 def test_all_is_well():
     law = vr.tables.law(11.0)
     report = validate((law,), states=500, stress_states=3, table_points=100, times=5, seed=5)
