@@ -169,6 +169,16 @@ def test_the_identity_is_of_every_number_but_n(file):
             continue
 
 
+def test_the_identity_is_of_the_order_of_uncertain_numbers():
+    """V0 and omega0 take the random numbers in their order: a store of one was resumed with the
+    other.
+    """
+    text = FILES["a preset"]
+    _, V0, omega0, *_ = text[text.index("[start]") :].splitlines(keepends=True)
+    swapped = text.replace(V0 + omega0, omega0 + V0)
+    assert run_of(swapped).digest != run_of(text).digest
+
+
 @pytest.mark.parametrize("file", ["numbers", *long("driven", "a driven roller")])
 def test_a_store_holds_the_run(file):
     """And what is exported of it: columns, what drove them, their units, their summaries."""

@@ -450,8 +450,10 @@ def _digest(
     materials: list[str],
     inputs: Inputs,
 ) -> str:
-    """Return the ``digest`` of a :class:`runs.Run`; comments and the order of keys do not change
-    it.
+    """Return the ``digest`` of a :class:`runs.Run`.
+
+    Comments and the order of keys do not change it, but that of the uncertain numbers: they take
+    the random numbers in their order.
 
     settings: :class:`RunSection`, content of the section [run], of which n, method and block do not
     count.
@@ -459,7 +461,7 @@ def _digest(
     content: name of a section, or ``preset`` -> content, as read; [run] is left out.
     materials: materials without uncertain inputs, as TOML, so that files that they name count too.
     inputs: :class:`.uncertain_inputs.Inputs`, whose columns of data files, names and numbers,
-    count.
+    count, and the order of its dimensions.
     Returns a SHA-256, 64 hexadecimal digits.
     """
     kept = {
@@ -474,7 +476,7 @@ def _digest(
         for name, values in columns.items()
     ]
     # deterministic: keys in sorted order
-    described = [kept, times.tolist(), sections, materials, samples]
+    described = [kept, times.tolist(), sections, materials, samples, inputs.dimensions]
     return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()
 
 
