@@ -139,6 +139,7 @@ def test_rest(rest):
     V0, omega0 = starts(40, 7, SCENE)
     V0[:2] = 1e-4
     omega0[:2] = -1e-4
+    V0[2] = omega0[2] = 0.0
     t = np.linspace(0.0, 2e-2, 9)
     mapped, rolled = (
         SCENE.ensemble(V0, omega0, t, rest=rest, method=method, fields=FIELDS, rtol=rtol)
@@ -147,6 +148,7 @@ def test_rest(rest):
     assert mapped.flow.any() or rest >= 1.0
     assert np.array_equal(mapped.status, rolled.status)
     assert np.array_equal(mapped.regime, rolled.regime)
+    assert np.array_equal(mapped.switches, rolled.switches)
     assert close(mapped.rest_time, rolled.rest_time, tol.FLOW_PATH)
     pairs = (mapped.x, mapped.angle), (rolled.x, rolled.angle)
     assert close(*pairs, tol.FLOW_PATH, scale=5e-8)

@@ -24,7 +24,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..contact_mechanics import Parameters
-from ..core import Floats, Integers, NDArray, broadcast_vector, load_kept, run_blocks, save_kept
+from ..core import (
+    Floats,
+    Integers,
+    MotionStatus,
+    NDArray,
+    broadcast_vector,
+    load_kept,
+    run_blocks,
+    save_kept,
+)
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, FlowTables
 from ..kernels.numerics.cache_folder import cache_root
@@ -572,4 +581,7 @@ def look_up_ensemble(
         threads=threads,
         progress=progress,
     )
+    # the kernel counts the onset; coming to rest is a change too, but of what stands from the start
+    moves = (V0 != 0.0) | (omega0 != 0.0)
+    result.switches[:] += moves & (result.status == MotionStatus.RESTED)
     return result
