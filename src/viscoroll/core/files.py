@@ -264,8 +264,11 @@ def write_bytes(path: FilePath, content: bytes) -> None:
 
 
 def write_text(path: FilePath, text: str) -> None:
-    """Write ``text`` to a file in UTF-8, by :func:`replace_file`, which raises FileError."""
-    write_bytes(path, text.encode())
+    """Write ``text`` to a file in UTF-8, by :func:`replace_file`, which raises FileError.
+
+    What UTF-8 does not have, as a byte of a file name that is not in UTF-8, is written as \\udcff.
+    """
+    write_bytes(path, text.encode(errors="backslashreplace"))
 
 
 def fix_texts(dataset: Dataset) -> Dataset:
@@ -279,7 +282,8 @@ def fix_texts(dataset: Dataset) -> Dataset:
     fixed = dataset.copy()
     for attributes in (fixed.attrs, *(variable.attrs for variable in fixed.variables.values())):
         attributes |= {
-            key: np.array(text.encode())
+            # a command in the history may name a file whose name is not in UTF-8
+            key: np.array(text.encode(errors="backslashreplace"))
             for key, text in attributes.items()
             if isinstance(text, str)
         }
