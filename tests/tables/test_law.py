@@ -26,7 +26,7 @@ from viscoroll.presets import read_law_source, read_roller
 from viscoroll.tables.law_dataset import check_table
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
-RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber"', density=1100.0)
+RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber" é', density=1100.0)
 STEEL = vr.Material.elastic(2e11, 0.3, name="steel")
 BODIES = vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3, (0.3, 0.45))
 GIVEN = {
@@ -62,7 +62,9 @@ def same(one, other):
 def test_a_file_has_the_bits_of_its_material(tmp_path, name):
     """Of covers: ``test_covers.py``."""
     table = law_table_of(*GIVEN[name])
-    tables.save(tables.law(*GIVEN[name]), tmp_path / "law.nc")
+    law = tables.law(*GIVEN[name])
+    tables.save(law, tmp_path / "law.nc")
+    xr.testing.assert_identical(tables.load(tmp_path / "law.nc"), law)
     loaded = vr.load_law(tmp_path / "law.nc")
     same(loaded, table)
     assert not loaded.coefficients.flags.writeable

@@ -275,17 +275,20 @@ def fix_texts(dataset: Dataset) -> Dataset:
     """Return a ``dataset`` whose attributes have texts of fixed length, as netCDF's C library
     writes them.
 
-    Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``.
+    Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``,
+    by the character set UTF-8 that the file states.
     """
+    import h5py
     import numpy as np
 
     fixed = dataset.copy()
     for attributes in (fixed.attrs, *(variable.attrs for variable in fixed.variables.values())):
         attributes |= {
             # a command in the history may name a file whose name is not in UTF-8
-            key: np.array(text.encode(errors="backslashreplace"))
+            key: np.array(content, h5py.string_dtype("utf-8", max(len(content), 1)))
             for key, text in attributes.items()
             if isinstance(text, str)
+            for content in [text.encode(errors="backslashreplace")]
         }
     return fixed
 
