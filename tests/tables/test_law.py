@@ -9,6 +9,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import c_code
+import h5py
 import numpy as np
 import pytest
 import tolerances as tol
@@ -143,13 +144,16 @@ def test_scene_files_and_material_files(saved, tmp_path):
 
 def test_rewritten_by_another_program(saved, tmp_path):
     """Another frame, the same numbers; texts as arrays of one text are not what netCDF's own
-    programs write.
+    programs write, but texts in UTF-8 that do not state it are.
     """
     copy = tmp_path / "copy.nc"
     with xr.open_dataset(saved, engine="h5netcdf", decode_times=False) as file:
         file.to_netcdf(copy, engine="h5netcdf")
     assert files.seal_matches(copy.read_bytes()) is None
     same(vr.load_law(copy), vr.load_law(saved))
+    with h5py.File(copy, "a") as file:
+        file.attrs["title"] = np.bytes_("é".encode())
+    assert tables.load(copy).title == "é"
 
 
 # --- other formats ---
