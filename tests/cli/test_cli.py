@@ -1,5 +1,6 @@
 """The program ``viscoroll``: every command on good and on bad input."""
 
+import io
 import json
 import re
 import shlex
@@ -114,6 +115,18 @@ def test_output_that_nothing_takes(line, code, error):
     command = ["bash", "-c", f"{shlex.quote(sys.executable)} -m viscoroll {line}"]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (code, "", error)
+
+
+def test_letters_that_a_stream_lacks_and_a_closed_one(here, monkeypatch):
+    """A Greek letter, a name of a file that is no UTF-8, and no standard error are no failures."""
+    (here / "m.toml").write_text('[material]\nname = "\\u03bc"\nE = 1.0\nnu = 0.5\n')
+    (here / "run.toml").write_text(UNCERTAIN)
+    printed = io.TextIOWrapper(io.BytesIO(), "ascii")
+    for name, value in (("stdout", printed), ("stderr", None), ("orig_argv", ["\udcff"])):
+        monkeypatch.setattr(sys, name, value)
+    for line in ("material show m.toml", "ensemble run.toml -o s.zarr", "tables law PAPER -o l.nc"):
+        assert code_of(line) == 0
+    assert b"\\u03bc" in printed.buffer.getvalue()
 
 
 @pytest.mark.parametrize(

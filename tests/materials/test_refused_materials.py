@@ -135,8 +135,11 @@ REFUSED = [
             "sum of J = 2e+300: must be below 1": lambda: vr.Prony.creep(
                 [1.7e308, 1.7e308], [1.0, 0.1]
             ),
-            "a name in C (letters, digits, _; no digit first) with .h, as rubber.h": lambda: (
-                vr.tables.export(vr.tables.law(11.0), "my-rubber.h")
+            "a name in C (letters, digits, _; no digit first": lambda: vr.tables.export(
+                vr.tables.law(11.0), "my-rubber.h"
+            ),
+            "no word of C or C++, nor vr_...) with .h, as rubber.h": lambda: vr.tables.export(
+                vr.tables.law(11.0), "double.h"
             ),
             "'V': ..., 'omega': ...": lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1),
             "2.0, 1.0 at rows 1, 2": lambda: vr.Coastdown(

@@ -9,6 +9,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import c_code
+import h5py
 import numpy as np
 import pytest
 import tolerances as tol
@@ -26,7 +27,7 @@ from viscoroll.presets import read_law_source, read_roller
 from viscoroll.tables.law_dataset import check_table
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
-RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber"', density=1100.0)
+RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber" é', density=1100.0)
 STEEL = vr.Material.elastic(2e11, 0.3, name="steel")
 BODIES = vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3, (0.3, 0.45))
 GIVEN = {
@@ -62,7 +63,9 @@ def same(one, other):
 def test_a_file_has_the_bits_of_its_material(tmp_path, name):
     """Of covers: ``test_covers.py``."""
     table = law_table_of(*GIVEN[name])
-    tables.save(tables.law(*GIVEN[name]), tmp_path / "law.nc")
+    law = tables.law(*GIVEN[name])
+    tables.save(law, tmp_path / "law.nc")
+    xr.testing.assert_identical(tables.load(tmp_path / "law.nc"), law)
     loaded = vr.load_law(tmp_path / "law.nc")
     same(loaded, table)
     assert not loaded.coefficients.flags.writeable
@@ -141,13 +144,16 @@ def test_scene_files_and_material_files(saved, tmp_path):
 
 def test_rewritten_by_another_program(saved, tmp_path):
     """Another frame, the same numbers; texts as arrays of one text are not what netCDF's own
-    programs write.
+    programs write, but texts in UTF-8 that do not state it are.
     """
     copy = tmp_path / "copy.nc"
     with xr.open_dataset(saved, engine="h5netcdf", decode_times=False) as file:
         file.to_netcdf(copy, engine="h5netcdf")
     assert files.seal_matches(copy.read_bytes()) is None
     same(vr.load_law(copy), vr.load_law(saved))
+    with h5py.File(copy, "a") as file:
+        file.attrs["title"] = np.bytes_("é".encode())
+    assert tables.load(copy).title == "é"
 
 
 # --- other formats ---

@@ -422,9 +422,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     SIGINT, 141 a standard output that was closed by its reader.  Other exceptions are faults of the
     program, and go on.
     """
-    if sys.stdout is None:  # closed by the shell
-        # prints need an object to write to
-        sys.stdout = io.StringIO()
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by the shell; prints and progress bars need an object
+            setattr(sys, name, io.StringIO())
+        elif isinstance(stream, io.TextIOWrapper):
+            # a text that the encoding of the terminal lacks, as a Greek letter, is no failure
+            stream.reconfigure(errors="backslashreplace")
     try:
         with warnings.catch_warnings():
             warnings.showwarning = partial(_print_warning, set())
@@ -498,16 +502,14 @@ def _print_error(error: object) -> int:
 
 
 def _print_line(message: object) -> None:
-    """Print a message in one line on standard error, after "viscoroll:"; nothing if that is closed
-    or full.
+    """Print a message in one line on standard error, after "viscoroll:"; nothing if that is full.
 
     message: an object whose text is printed, its line breaks as blanks.
     """
-    if sys.stderr is not None:
-        try:
-            print("viscoroll:", " ".join(str(message).split()), file=sys.stderr, flush=True)
-        except OSError:
-            _discard(sys.stderr)
+    try:
+        print("viscoroll:", " ".join(str(message).split()), file=sys.stderr, flush=True)
+    except OSError:
+        _discard(sys.stderr)
 
 
 def _discard(stream: TextIO) -> None:

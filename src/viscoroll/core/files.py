@@ -264,24 +264,31 @@ def write_bytes(path: FilePath, content: bytes) -> None:
 
 
 def write_text(path: FilePath, text: str) -> None:
-    """Write ``text`` to a file in UTF-8, by :func:`replace_file`, which raises FileError."""
-    write_bytes(path, text.encode())
+    """Write ``text`` to a file in UTF-8, by :func:`replace_file`, which raises FileError.
+
+    What UTF-8 does not have, as a byte of a file name that is not in UTF-8, is written as \\udcff.
+    """
+    write_bytes(path, text.encode(errors="backslashreplace"))
 
 
 def fix_texts(dataset: Dataset) -> Dataset:
     """Return a ``dataset`` whose attributes have texts of fixed length, as netCDF's C library
     writes them.
 
-    Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``.
+    Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``,
+    by the character set UTF-8 that the file states.
     """
+    import h5py
     import numpy as np
 
     fixed = dataset.copy()
     for attributes in (fixed.attrs, *(variable.attrs for variable in fixed.variables.values())):
         attributes |= {
-            key: np.array(text.encode())
+            # a command in the history may name a file whose name is not in UTF-8
+            key: np.array(content, h5py.string_dtype("utf-8", max(len(content), 1)))
             for key, text in attributes.items()
             if isinstance(text, str)
+            for content in [text.encode(errors="backslashreplace")]
         }
     return fixed
 

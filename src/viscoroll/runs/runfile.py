@@ -329,7 +329,7 @@ def read_run(path: str | PathLike[str]) -> Run:
         settings,
         times,
         content=content,
-        materials=[material_as_toml(material) for material in certain.values()],
+        materials=[material_as_toml(material) for material in materials.values()],
         inputs=inputs,
     )
     run = Run(path=path, text=text, settings=settings, inputs=inputs, t=times, digest=digest)
@@ -459,7 +459,7 @@ def _digest(
     count.
     times: output times, (t,), in the unit of the file.
     content: name of a section, or ``preset`` -> content, as read; [run] is left out.
-    materials: materials without uncertain inputs, as TOML, so that files that they name count too.
+    materials: materials of the median inputs, as TOML, so that files that they name count too.
     inputs: :class:`.uncertain_inputs.Inputs`, whose columns of data files, names and numbers,
     count, and the order of its dimensions.
     Returns a SHA-256, 64 hexadecimal digits.

@@ -27,6 +27,14 @@ from . import table_files
 
 #: Attributes of a grid with the parameters of its roller.
 _PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
+#: Pattern of the names that a law in C cannot have: keywords of C and C++, and the evaluator's own.
+_TAKEN = (
+    "vr_.*|auto|bool|break|case|catch|char|class|const|continue|default|delete|do|double|else|enum|"
+    "explicit|export|extern|false|float|for|friend|goto|if|inline|int|long|main|mutable|namespace|"
+    "new|operator|private|protected|public|register|restrict|return|short|signed|sizeof|static|"
+    "struct|switch|template|this|throw|true|try|typedef|typename|union|unsigned|using|virtual|void|"
+    "volatile|while"
+)
 #: Attribute of a field of a grid with the largest absolute error of linear interpolation.
 _ERROR = "linear_error"
 
@@ -234,9 +242,12 @@ def _write_header(dataset: Dataset, path: Path) -> None:
     written.
     """
     name = path.stem
-    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+    if not re.fullmatch(rf"(?!({_TAKEN})$)[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError(
-            "path", path, "a name in C (letters, digits, _; no digit first) with .h, as rubber.h"
+            "path",
+            path,
+            "a name in C (letters, digits, _; no digit first; no word of C or C++, nor vr_...) "
+            "with .h, as rubber.h",
         )
     table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
     coupled = table.coupled is not None

@@ -262,6 +262,12 @@ def load(path: str | PathLike[str]) -> Dataset:
             "is not a netCDF-4 file of a law or grid, or is damaged: give such a file, or "
             f"{_REBUILD}",
         ) from error
+    table.attrs = {  # xarray decodes as ASCII what another program has not declared UTF-8
+        name: text.encode(errors="surrogateescape").decode(errors="replace")
+        if isinstance(text, str)
+        else text
+        for name, text in table.attrs.items()
+    }
     check_content(table, path)
     table.encoding["source"] = str(path)  # for messages, as where xarray reads a file
     return table
