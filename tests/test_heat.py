@@ -163,10 +163,11 @@ def test_two_bodies_with_a_temperature_each():
         shift=vr.Arrhenius(energy=9e4, T0=10.0),
     )
     pair = ROLLER.replace(base=base)
-    found = pair.pair_temperatures(2.0, ambient=(0.0, 20.0), conductance=(6.0, 30.0))
+    found = pair.pair_temperatures(-2.0, ambient=(0.0, 20.0), conductance=(6.0, 30.0))
     one, other = found.temperature[0].tolist()
-    warm = pair.replace(material=RUBBER.at(one), base=base.at(other)).contact(2.0, delta=0.0)
-    assert close(2.0 * np.array([warm.M_cylinder, warm.M_half_space]) / 0.1, found.loss[0], 1e-12)
+    warm = pair.replace(material=RUBBER.at(one), base=base.at(other)).contact(-2.0, delta=0.0)
+    assert close(-2.0 * np.array([warm.M_cylinder, warm.M_half_space]) / 0.1, found.loss[0], 1e-12)
+    assert close(found.C_rr[0], warm.C_rr, 1e-12)
     assert close(found.loss[0], [6.0 * one, 30.0 * (other - 20.0)], 1e-8)
 
 
