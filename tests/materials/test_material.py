@@ -13,6 +13,7 @@ from calls import file, of_materials
 from closeness import close
 
 import viscoroll as vr
+from viscoroll.materials import Pair
 from viscoroll.materials.material_toml import material_as_toml, read_materials
 
 pytestmark = pytest.mark.usefixtures("here")
@@ -87,6 +88,21 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
         plane = 4.0 * G * (3.0 * K + G) / (3.0 * K + 4.0 * G)
         assert close(modulus(found, omega) / (1.0 - found.nu**2), plane, tol.MATERIAL_FORMS)
         assert close(found.instant, 1e6, tol.MATERIAL_FORMS)
+
+
+def test_a_poissons_ratio_that_changes_with_time():
+    """Dundurs' constant at once is that of nu at t = 0, beside a rigid body (1 - 2 nu)/(2 - 2 nu).
+    The series is that of a half-space in plane strain alone.
+    """
+    rubber = vr.Material.abaqus(1e7, 0.45, [0.4], [1.0], k=[0.0])
+    ends = [(1.0 - 2.0 * nu) / (2.0 - 2.0 * nu) for nu in (rubber.nu, 0.45)]
+    assert close(Pair(vr.Material.rigid(), rubber).dundurs, ends, tol.MATERIAL_FORMS)
+    for body, plane in (
+        (rubber, "stress"),
+        (dataclasses.replace(rubber, thickness=0.01), "strain"),
+    ):
+        with pytest.raises(vr.ParameterError, match="nu_instant is given"):
+            Pair(body, vr.Material.rigid(), plane)
 
 
 def test_bulk_terms_in_another_unit_than_shear_warn():

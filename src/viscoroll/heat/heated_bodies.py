@@ -156,19 +156,22 @@ def shift_curve(material: Material) -> ShiftCurve:
     Raises ParameterError for a material without a shift, for a shift that is not defined at the
     reference or does not fall with temperature.
     """
-    return _make_curve(material, material.shift, material.vertical_shift)
+    return _make_curve(material, id(material.shift), id(material.vertical_shift))
 
 
 @lru_cache(maxsize=64)
-def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
+def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
     """Return the :class:`ShiftCurve` of a material, kept for equal arguments.
 
-    material: the material, of which the temperature is read.
-    shift, vertical: its shifts, which are arguments too since materials compare equal without them.
+    material: the material.
+    shifts: what tells its shifts from others, since materials compare equal without them, and a
+        function need not have a hash; the material that is kept keeps its shifts too.
     Raises ParameterError for a missing shift, and for one that rises with temperature or is not
     defined at the reference.
     """
     reference = material.temperature
+    shift: Any = material.shift
+    vertical = material.vertical_shift
     if shift is None:
         raise ParameterError(
             "shift",
@@ -194,7 +197,7 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
             pole=pole,
             own=own,
         )
-    theta, a_T = _sampled(shift, reference)
+    theta, a_T = _sampled(shift, reference, vertical)
     log2 = np.log2(a_T)
     if (rises := np.flatnonzero(np.diff(log2) > _ROUNDING)).size:
         found = f"rises at {theta[rises[0]]:.4g} degrees Celsius"
@@ -210,12 +213,13 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
     )
 
 
-def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
-    """Sample a shift in the range around the reference in which it is defined.
+def _sampled(shift: Any, reference: float | None, vertical: Any) -> tuple[Floats, Floats]:
+    """Sample a shift in the range around the reference in which it and a vertical one are defined.
 
     shift: function of a temperature in degrees Celsius, whose attribute ``range``, if it has one,
         is (lowest, highest) temperature.
     reference: temperature of the material, degrees Celsius; None: that at which a_T is 1.
+    vertical: vertical shift, as in :func:`vertical_factor`.
     Returns (temperatures, degrees Celsius, ascending and evenly spaced; a_T there), (n,) each.
     Raises ParameterError for a shift that is not defined at the reference.
     """
@@ -226,6 +230,7 @@ def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
         warnings.simplefilter("ignore", ModelWarning)
         for n, at in enumerate(theta.tolist()):
             try:
+                vertical_factor(vertical, at, reference)
                 a_T[n] = relative_shift(shift, at, reference)
             except (ViscorollError, ArithmeticError, ValueError):
                 continue

@@ -474,7 +474,7 @@ class PairTemperatures(NamedTuple):
 
     temperature : of the cylinder and of the base, degrees Celsius, (n, 2).
     stable : whether both return after small disturbances, of bodies of one capacity, (n,).
-    C_rr : coefficient of rolling resistance, (n,).
+    C_rr : coefficient of rolling resistance, of the sign of V, (n,).
     loss : of the cylinder and of the base, W/m, (n, 2).
     """
 
@@ -533,7 +533,8 @@ def pair_temperatures(
             "has arrays, a thickness or no Material",
             "a Cylinder of Materials without thickness, and without arrays",
         )
-    speed = abs(check_number("V", V, unit=scale))
+    V = check_number("V", V, unit=scale)
+    speed = abs(V)
     around = check_array("ambient", ambient, unit="degC")
     off = check_array("conductance", conductance, unit="W m-1 K-1", above=0.0)
     for name, array in (("ambient", around), ("conductance", off)):
@@ -594,4 +595,4 @@ def pair_temperatures(
     loss = losses(theta.T).T
     # capacity dtheta/dt is conductance times ``rest``, of both bodies with one capacity
     rates = [np.linalg.eigvals(off[:, None] * slopes(at)).real.max() for at in theta]
-    return PairTemperatures(theta, np.array(rates) < 0.0, loss.sum(axis=1) / (load * speed), loss)
+    return PairTemperatures(theta, np.array(rates) < 0.0, loss.sum(axis=1) / (load * V), loss)

@@ -54,7 +54,7 @@ class Material(FromPrograms):
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at`
         starts there.  Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
     nu_instant : Poisson's ratio at t = 0, in (-1, 0.5], of a material imported with bulk terms
-        unlike those of shear; None: nu is constant in time.  Only ``instant`` needs it.
+        unlike those of shear, a half-space in plane strain; None: nu is constant in time.
     shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius
         that returns a_T; it is the default of :meth:`at`, and what :meth:`Cylinder.temperature`
         needs.  Default: none.

@@ -39,6 +39,7 @@ class Solid(NamedTuple):
     prony : one series or n of them, times in units of T_ref.
     T_ref : unit of these times, s.
     thickness : thickness of a layer, m, a number or (n,); None: a half-space.
+    nu_instant : as in :class:`Material`; None: nu is constant in time.
     """
 
     E: Any
@@ -46,6 +47,7 @@ class Solid(NamedTuple):
     prony: Prony
     T_ref: float
     thickness: Any = None
+    nu_instant: float | None = None
 
     @property
     def G(self) -> Any:
@@ -67,7 +69,7 @@ class Pair:
     ------
     ParameterError
         A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; a layer in plane
-        stress.
+        stress; a Poisson's ratio that changes with time, of a layer or in plane stress.
     """
 
     cylinder: Any
@@ -94,6 +96,14 @@ class Pair:
             raise ParameterError(
                 "plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)"
             )
+        for body in (self.cylinder, self.half_space):
+            if body.nu_instant is not None and (self.plane, body.thickness) != ("strain", None):
+                raise described_error(
+                    "nu_instant",
+                    "is given, as by bulk terms unlike those of shear, and the series of such a "
+                    "material is that of a half-space in plane strain",
+                    "left out (bulk terms too) for a layer and in plane stress",
+                )
 
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
@@ -307,12 +317,16 @@ class Pair:
         pressure do not couple.  Body 1 of the formula of :func:`dundurs` is the cylinder; one body
         may be rigid.  It is exactly (0.0, 0.0) for like bodies.
         """
-        one = self.cylinder
-        other = self.half_space
         of_pairs = np.vectorize(dundurs, otypes=[float])
+        bodies = self.cylinder, self.half_space
+        late = [(body.G, body.nu) for body in bodies]
+        early = []
+        for body in bodies:
+            nu = body.nu if body.nu_instant is None else body.nu_instant
+            # alpha is that of E/(1 - nu^2) = 2 G/(1 - nu)
+            early.append((body.G * body.prony.alpha * ((1.0 - nu) / (1.0 - body.nu)), nu))
         long, instant = (
-            of_pairs(one.G * part, one.nu, other.G * other_part, other.nu, self.plane).tolist()
-            for part, other_part in ((1.0, 1.0), (one.prony.alpha, other.prony.alpha))
+            of_pairs(*one, *other, self.plane).tolist() for one, other in (late, early)
         )
         return long, instant
 

@@ -116,8 +116,8 @@ def _quantity(name: str) -> tuple[str, str] | None:
     kinds = {kind for part in parts for kind in _KINDS[part].split()}
     modes = kinds & {"tension", "shear"}
     named = frozenset(kinds - modes - {"-"})
-    # of "storage modulus" the first word alone tells what it is
-    quantity = _NAMED_BY.get(named) or _NAMED_BY.get(named - {"modulus"})
+    # of "storage modulus" and "mean storage" one word alone tells what it is
+    quantity = _NAMED_BY.get(named) or _NAMED_BY.get(named - {"modulus", "mean"})
     if quantity is None or len(modes) > 1:
         return None
     return quantity, " ".join(modes) if "Pa" in UNITS[quantity] else ""

@@ -34,6 +34,7 @@ from ..materials import (
 )
 from .dma_reader import RelaxationModulus
 from .dynamic_moduli import (
+    SAME_TEMPERATURE,
     Curve,
     DynamicModuli,
     Relaxation,
@@ -446,16 +447,18 @@ def fit_at_strain(
     Returns
     -------
     Fit
-        Of log E' and log E'' interpolated in log strain between two isothermal sets, or of the set
-        nearest to the strain, where it is beyond all sets or they have several temperatures;
+        Of log E' and log E'' interpolated in log strain between two sets of one temperature, or of
+        the set nearest to the strain, where it is beyond all sets or they have several
+        temperatures;
         ``strain`` is that of these moduli, and ``source`` says which sets they are.  Of one set it
         is ``fit_prony(record)``.
 
     Raises
     ------
     ParameterError
-        A record without strain, no record, two records of one strain, a cylinder without a
-        Material, and as :func:`viscoroll.fit_prony` and :func:`viscoroll.validity`.
+        A record without strain, no record, two records of one strain or of tension and shear, a
+        cylinder without a Material, and as :func:`viscoroll.fit_prony` and
+        :func:`viscoroll.validity`.
     ConvergenceError
         A strain that does not settle, as where the nearest of two sets depends on the moduli of
         each.
@@ -513,8 +516,8 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
 
     records : as in :func:`fit_at_strain`.
     Returns a list of :class:`DynamicModuli`; a record of one strain is in it as it is.
-    Raises ParameterError for what is no record, no record, a record without strain, and two of one
-    strain.
+    Raises ParameterError for what is no record, no record, a record without strain, two of one
+    strain, and records of tension beside those of shear.
     """
     found: list[Any] = []
     for record in records:
@@ -535,6 +538,8 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
     if len({*means}) < max(1, len(means)):
         allowed = "at least one, each of another strain"
         raise described_error("records", f"have the strains {means}", allowed)
+    if len({each.mode for each in found}) > 1:
+        raise described_error("records", "are of tension and of shear", "of one mode")
     return sorted(found, key=lambda each: each.mean_strain)
 
 
@@ -549,8 +554,9 @@ def _points(record: DynamicModuli, at: Any) -> DynamicModuli:
 def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
     """Return the moduli at a strain.
 
-    Between two isothermal sets the logarithms of both moduli are interpolated in that of the
-    strain, at the frequencies that both sets cover; else the moduli are those of the nearest set.
+    Between two sets of one temperature the logarithms of both moduli are interpolated in that of
+    the strain, at the frequencies that both sets cover; else the moduli are those of the nearest
+    set.
 
     sets : at least two, of :func:`_sets_of`.
     strain : amplitude of strain, dimensionless, > 0.
@@ -561,7 +567,9 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
     n = int(np.searchsorted(strains, strain).clip(1, strains.size - 1))
     part = math.log(strain / strains[n - 1]) / math.log(strains[n] / strains[n - 1])
     less, more = sets[n - 1 : n + 1]
-    if not (0.0 < part < 1.0 and less.isothermal and more.isothermal):
+    known = [each.temperature for each in (less, more) if each.temperature is not None]
+    isothermal = not known or np.ptp(np.concatenate(known)) <= SAME_TEMPERATURE
+    if not (0.0 < part < 1.0 and isothermal):
         nearest = less if part < 0.5 else more
         return replace(
             nearest, source=f"{nearest.source}, the set at a strain of {nearest.mean_strain:.3g}"
