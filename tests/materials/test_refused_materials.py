@@ -142,6 +142,9 @@ REFUSED = [
             "2.0, 1.0 at rows 1, 2": lambda: vr.Coastdown(
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
+            "run: omega is in 1/min, which may be of turns (rpm) or of radians": lambda: (
+                vr.Coastdown(TIMES, omega=xr.DataArray(TIMES, attrs={"units": "1/min"}))
+            ),
             "V0 of the record is not given": (
                 lambda: vr.identify(roller(), ranges("E"), resistance(), starts=1).predict(
                     vr.Coastdown(TIMES, TIMES)
@@ -181,6 +184,9 @@ REFUSED = [
             "unknown | at least one name": {"unknown": {}},
             "unknown E | (1e+06, 2e+06) | the value with which the search starts, 3e+06": {
                 "unknown": {"E": (1e6, 2e6)}
+            },
+            "standard deviation of prior E is in kPa: must be a number without dimension": {
+                "prior": {"E": (3e6, xr.DataArray(1.0, attrs={"units": "kPa"}))}
             },
             "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
             "more points, fewer unknowns": {"data": vr.Resistance(0.1, 0.1)},

@@ -243,6 +243,14 @@ def describe_quantity(name: str, si: bool = False) -> str:
 _SPELLINGS = str.maketrans("²³⁻¹·⋅µμ", "23-1  uu") | {ord("°"): "deg"}
 #: Symbol of a unit and its power: "m-1", "mm^2", "s**-2".
 _POWER = re.compile(r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
+#: Texts for the unit of a dimensionless number.
+_DIMENSIONLESS = ("", "1", "-", "dimensionless")
+#: Units of angles, turns and cycles, and of these per time.  "1/s" and "1/min" do not say which.
+CYCLES = re.compile(
+    r"(?i)hz|hertz|count|[cr]p[ms]|rad|rev|cyc|circ|turn|osc|giri|tours|\b(?:[ucr]|tr|umdr)/|upm|u\s*min|deg|gon|arc|°"
+)
+#: Remark on an angular velocity in such a unit.
+TURNS = ", which may be of turns (rpm) or of radians (rad/s)"
 
 
 @lru_cache(maxsize=1)
@@ -266,22 +274,32 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
     Returns two floats, the offset in ``target``; it is 0 unless the units are temperatures with
     different zeros.
     Raises ParameterError for a unit that pint does not know, or of another dimension than
-    ``target``.
+    ``target``.  pint takes an angle for a number, which is refused here: an angle where a ratio is
+    wanted ("1"), a ratio as 5 % where an angle is wanted ("rad"; a slope of 5 % is one of
+    atan(0.05)), and 1/min and others but 1/s of an angular velocity ("rad s-1").
     """
     import pint
 
     quantity = registry().Quantity
+    allowed = f"a unit of the dimension of {target}"
     try:
         at_0, at_1 = (
             quantity(number, pint_spelling(unit)).to(pint_spelling(target)).magnitude
             for number in (0.0, 1.0)
         )
     except pint.DimensionalityError:
-        raise ParameterError("unit", unit, f"a unit of the dimension of {target}") from None
+        raise ParameterError("unit", unit, allowed) from None
     except Exception as error:  # pint raises errors of its own parser and of Python's
-        raise ParameterError(
-            "unit", unit, f"a unit that pint knows, of the dimension of {target}"
-        ) from error
+        raise ParameterError("unit", f"{unit:.40}, a unit that is not known", allowed) from error
+    unclear = ""
+    if target == "rad s-1" and at_1 != 1.0 and not CYCLES.search(unit):
+        unclear = TURNS
+    elif target == "1" and CYCLES.search(unit):
+        unclear = ", an angle"
+    elif target == "rad" and not (CYCLES.search(unit) or unit.strip() in _DIMENSIONLESS):
+        unclear = ", a ratio"
+    if unclear:
+        raise ParameterError("unit", unit + unclear, allowed)
     # Without an offset the factor is the converted 1 itself, so that exact factors stay exact: 1e6,
     # not 1/1e-6.
     return (at_1 - at_0, at_0) if at_0 else (at_1, 0.0)
@@ -315,13 +333,9 @@ UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np
 _UNITLESS_KINDS = frozenset("biufcUSM")
 #: Types of the elements of lists without a unit.
 _NUMBER_TYPES = frozenset((float, int))
-#: Texts for the unit of a dimensionless number.
-_DIMENSIONLESS = ("", "1", "-", "dimensionless")
 #: Hertz in a unit.  A cycle is 2 pi rad for an angular velocity; for other arguments its meaning is
 #: unclear.
 _HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE)
-#: A fraction in a unit, which is not an angle: a slope of 5 % is one of atan(0.05).
-_FRACTION = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
 #: A unit in brackets at the end of the title of a column.
 _TITLE_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
 #: Labels of a series that are searched for the units of columns: more would take time, and a row of
@@ -429,24 +443,19 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
     Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers
     in ``target``: a float, a float64 array of the same shape with its labels, or a list of these.
     Raises ParameterError for a unit that is unknown, of another dimension or of unclear meaning (Hz
-    for other arguments than an angular velocity, percent of an angle, differences of temperature),
-    and for numbers that are not numeric.
+    for other arguments than an angular velocity, differences of temperature, and those of
+    :func:`conversion_factor`), and for numbers that are not numeric.
     """
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
     if unit.strip() in _DIMENSIONLESS and target != "rad":
         raise unit_error(name, "units of 1, without dimension", target)
-    cycles = target != "rad s-1" and _HERTZ.search(unit)
-    if (
-        cycles
-        or (target == "rad" and _FRACTION.search(unit))
-        or (target == _TEMPERATURE and "delta" in unit)
-    ):
+    if "delta" in unit if target == _TEMPERATURE else target != "rad s-1" and _HERTZ.search(unit):
         raise unit_error(name, unit, target)
     try:
         factor, offset = conversion_factor(unit, target)
     except ParameterError as error:
-        raise unit_error(name, unit, target, known="pint knows" not in error.allowed) from None
+        raise unit_error(name, str(error.value), target) from None
     # where no temperature is wanted, an offset makes the meaning unclear: 20 degC or 20 K more
     if offset and target != _TEMPERATURE:
         raise unit_error(name, unit, target)
