@@ -153,7 +153,7 @@ REFUSED += each(
             "torque": vr.Feedback(math.sin, V=-1.0)
         },
         "index": {"slope": FRAME["V"], "torque": FRAME["delta"].iloc[::-1]},
-        "slope is in percent: must be in rad": {
+        "slope is in percent, a ratio: must be in rad": {
             "roller": ROLLER,
             "slope": xr.DataArray(5.0, attrs={"units": "percent"}),
         },

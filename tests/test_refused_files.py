@@ -163,8 +163,8 @@ REFUSED = [
                 file("[scene]\nalpha = 2.0\n", "dma.toml"),
                 of_materials('[base]\nfile = "dma.toml"\n'),
             ],
-            "V is in m/s and km/h: must be in a unit of the dimension of m s-1": lambda: data(
-                "V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n"
+            "V is in m/s and km/h, a unit that is not known: must be in a unit of the": lambda: (
+                data("V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n")
             ),
             "delta is in deg, an angle: must be": lambda: data(
                 "V [m/s],delta [deg],Q [N/m]\n1,2,3\n", "traction"

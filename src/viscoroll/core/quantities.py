@@ -245,11 +245,11 @@ _SPELLINGS = str.maketrans("²³⁻¹·⋅µμ", "23-1  uu") | {ord("°"): "deg"
 _POWER = re.compile(r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
 #: Texts for the unit of a dimensionless number.
 _DIMENSIONLESS = ("", "1", "-", "dimensionless")
-#: Units of angles, turns and cycles, and of these per time.  "1/s" and "1/min" do not say which.
+#: Units of angles, turns and cycles, and of these per time.
 CYCLES = re.compile(
     r"(?i)hz|hertz|count|[cr]p[ms]|rad|rev|cyc|circ|turn|osc|giri|tours|\b(?:[ucr]|tr|umdr)/|upm|u\s*min|deg|gon|arc|°"
 )
-#: Remark on an angular velocity in such a unit.
+#: Remark on an angular velocity in a unit that is none of these, as 1/min.
 TURNS = ", which may be of turns (rpm) or of radians (rad/s)"
 
 
@@ -271,12 +271,10 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
 
     unit, target: units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; ""
         and "1" of a ratio; 1 Hz is 2 pi rad/s.
-    Returns two floats, the offset in ``target``; it is 0 unless the units are temperatures with
-    different zeros.
+    Returns two floats; the offset, in ``target``, is 0 but for temperatures with different zeros.
     Raises ParameterError for a unit that pint does not know, or of another dimension than
-    ``target``.  pint takes an angle for a number, which is refused here: an angle where a ratio is
-    wanted ("1"), a ratio as 5 % where an angle is wanted ("rad"; a slope of 5 % is one of
-    atan(0.05)), and 1/min and others but 1/s of an angular velocity ("rad s-1").
+    ``target``; an angle for a ratio ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of
+    atan(0.05)), and, for an angular velocity ("rad s-1"), 1/min and others but 1/s.
     """
     import pint
 
@@ -291,17 +289,14 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
         raise ParameterError("unit", unit, allowed) from None
     except Exception as error:  # pint raises errors of its own parser and of Python's
         raise ParameterError("unit", f"{unit:.40}, a unit that is not known", allowed) from error
-    unclear = ""
-    if target == "rad s-1" and at_1 != 1.0 and not CYCLES.search(unit):
-        unclear = TURNS
-    elif target == "1" and CYCLES.search(unit):
-        unclear = ", an angle"
-    elif target == "rad" and not (CYCLES.search(unit) or unit.strip() in _DIMENSIONLESS):
-        unclear = ", a ratio"
-    if unclear:
+    says = CYCLES.search(unit) is not None
+    if unclear := {
+        "rad s-1": TURNS * (at_1 != 1.0 and not says),
+        "1": ", an angle" * says,
+        "rad": ", a ratio" * (not says and unit.strip() not in _DIMENSIONLESS),
+    }.get(target):
         raise ParameterError("unit", unit + unclear, allowed)
-    # Without an offset the factor is the converted 1 itself, so that exact factors stay exact: 1e6,
-    # not 1/1e-6.
+    # Without an offset the factor is the converted 1 itself, so that exact ones stay exact.
     return (at_1 - at_0, at_0) if at_0 else (at_1, 0.0)
 
 
@@ -333,13 +328,11 @@ UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np
 _UNITLESS_KINDS = frozenset("biufcUSM")
 #: Types of the elements of lists without a unit.
 _NUMBER_TYPES = frozenset((float, int))
-#: Hertz in a unit.  A cycle is 2 pi rad for an angular velocity; for other arguments its meaning is
-#: unclear.
+#: Hertz in a unit, which has a clear meaning for an angular velocity alone: 2 pi rad/s.
 _HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE)
 #: A unit in brackets at the end of the title of a column.
 _TITLE_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
-#: Labels of a series that are searched for the units of columns: more would take time, and a row of
-#: a table has fewer.
+#: Labels of a series that are searched for the units of columns: a row of a table has fewer.
 _MOST_COLUMNS = 100
 #: The only unit of arguments whose zero differs from that of other units of its dimension.
 _TEMPERATURE = "degC"
@@ -442,9 +435,8 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
     target: wanted unit, as "m s-1"; "1" of a dimensionless number, "rad" of an angle.
     Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers
     in ``target``: a float, a float64 array of the same shape with its labels, or a list of these.
-    Raises ParameterError for a unit that is unknown, of another dimension or of unclear meaning (Hz
-    for other arguments than an angular velocity, differences of temperature, and those of
-    :func:`conversion_factor`), and for numbers that are not numeric.
+    Raises ParameterError as :func:`conversion_factor`, for Hz of other arguments than an angular
+    velocity and differences of temperature, and for numbers that are not numeric.
     """
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
