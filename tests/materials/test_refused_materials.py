@@ -142,9 +142,6 @@ REFUSED = [
             "2.0, 1.0 at rows 1, 2": lambda: vr.Coastdown(
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
-            "run: omega is in 1/min, which may be of turns (rpm) or of radians": lambda: (
-                vr.Coastdown(TIMES, omega=xr.DataArray(TIMES, attrs={"units": "1/min"}))
-            ),
             "V0 of the record is not given": (
                 lambda: vr.identify(roller(), ranges("E"), resistance(), starts=1).predict(
                     vr.Coastdown(TIMES, TIMES)
