@@ -319,9 +319,8 @@ SAMPLE_RATIO = 2.0
 #: Largest allowed error of the splines of a grid, divided by the largest value of the field,
 #: whatever the grid states: a bound beyond the range of the field would allow anything.
 _MOST_ALLOWED = 0.5
-#: The same of a table of the coupled solution, whose stated errors are those of some tens of
-#: points.
-_COUPLED_RATIO = 8.0
+#: The same as :data:`SAMPLE_RATIO` of laws whose stated errors are those of some tens of points.
+_FEW_RATIO = 8.0
 #: Largest number of points of laws whose points are solved, some seconds of work, by kind.
 _MOST_POINTS = {COUPLED: COUPLED_POINTS, COVER: 400}
 #: Kind of the file of a law -> points at which it is checked, and the reference.
@@ -430,8 +429,8 @@ def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
     list of Check
         Of a law one for each function: the largest error, dimensionless, of the kind that
         :func:`measured_errors` states; allowed are the error that the file states times
-        2 (of a table of the coupled solution 8) plus :data:`ROUNDING`, of functions of the effect
-        of shear plus 1e-8.  Of a grid two for each field: its nodes, then its splines
+        2 (of a layer and of a table of the coupled solution 8) plus :data:`ROUNDING`, of functions
+        of the effect of shear plus 1e-8.  Of a grid two for each field: its nodes, then its splines
         (:func:`_check_grid`).
 
     Raises
@@ -451,7 +450,7 @@ def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
     kind = content.attributes[KIND]
     read = parse_axis if kind == AXIS else parse_law
     count = min(count, _MOST_POINTS.get(kind, count))
-    ratio = _COUPLED_RATIO if kind == COUPLED else SAMPLE_RATIO
+    ratio = _FEW_RATIO if kind in _MOST_POINTS else SAMPLE_RATIO
     errors = measured_errors(read(content, source), count, seed)
     return [
         Check(
