@@ -199,6 +199,13 @@ def test_slow_and_fast(scene):
     assert close(2.0 * fast[1], fast[0], tol.COVER_FAST)
 
 
+def test_slopes_over_Q_are_those_of_a_longer_step(monkeypatch):
+    cover = vr.Cover(vr.Prony([100.0], [0.01]), nu=0.3, thickness=0.3)
+    slopes = solve_at_speed(cover, 1.0)[9:]
+    monkeypatch.setattr("viscoroll.laws.cover_rows._OFFSET", 3e-4)
+    assert close(solve_at_speed(cover, 1.0)[9:], slopes, tol.COVER_STEP)
+
+
 def test_nothing_jumps_where_nu_is_a_half():
     near, at = (
         solve_at_speed(vr.Cover(THREE, nu=nu, thickness=0.5), 0.3) for nu in (0.5 - 1e-9, 0.5)

@@ -235,7 +235,8 @@ def test_shear_is_shear():
     so.
     """
     omega, storage, loss = curve(np.logspace(-2.5, 6.5, 60))
-    tension = vr.fit_prony(omega, storage, loss, source="sweep.csv")
+    tension = vr.fit_prony(omega, storage, loss, temperature=20.0, source="sweep.csv")
+    assert tension.to_xarray().temperature == 20.0
     record = vr.DynamicModuli(omega, storage / 2.98, loss / 2.98, mode="shear", source="sweep.csv")
     shear = vr.fit_prony(record)
     assert close(shear.material(0.49).E, tension.material(0.49).E, tol.DMA_EXACT)

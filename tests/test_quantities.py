@@ -119,6 +119,8 @@ MADE = {
     "Motion": lambda: CYLINDER.roll(0.5, 0.5, 0.25),
     "Ensemble": lambda: CYLINDER.ensemble([0.5, 0.4], 0.5, 0.25),
 }
+#: unit -> one that pint takes for it
+TAKEN = {"1": "deg", "rad": "percent", "rad s-1": "1/min"}
 #: how a unit is refused
 REFUSED = "must be in .+, or in another unit|must be a number without dimension"
 
@@ -287,7 +289,7 @@ def test_every_argument_is_converted_or_refused(call):
                     close(one, right, tolerances.UNIT_CONVERTED, scale=scale, what=what)
         wrong = [
             xr.DataArray(argument.value, attrs={"units": other})
-            for other in ("mol", *["1"] * (unit not in ("1", "rad")))
+            for other in (TAKEN.get(unit, "mol"), *["1"] * (unit not in ("1", "rad")))
         ]
         wrong += [pd.Timedelta(1, "s"), np.timedelta64(1, "s")] * (unit != "s")
         for other in (*wrong, [Quantity(1.0, "mol")]):

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
 from calls import (
     BARE,
     COVERED,
@@ -16,7 +15,6 @@ from calls import (
     LABELLED,
     MANY,
     PAPER,
-    ROLLER,
     RUBBER_COVER,
     SERIES,
     SI,
@@ -153,10 +151,6 @@ REFUSED += each(
             "torque": vr.Feedback(math.sin, V=-1.0)
         },
         "index": {"slope": FRAME["V"], "torque": FRAME["delta"].iloc[::-1]},
-        "slope is in percent: must be in rad": {
-            "roller": ROLLER,
-            "slope": xr.DataArray(5.0, attrs={"units": "percent"}),
-        },
     },
     roller=PAPER,
 )

@@ -101,11 +101,6 @@ REFUSED = [
             "column 'j' of j.nc: the file is damaged, or is not a .nc file": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{file("j", "j.nc")}", column = "j" }}'
             ),
-            "unit = 1/min: must be rpm or rad/s, as it may be of turns or of radians": lambda: run(
-                "numbers",
-                'omega0 = { distribution = "norm", loc = 0.05, scale = 0.1 }',
-                'omega0 = {{ column = "n", file = "{}" }}'.format(file("n [1/min]\n1\n", "n.csv")),
-            ),
             "is the law of every alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"
             ),
@@ -168,8 +163,11 @@ REFUSED = [
                 file("[scene]\nalpha = 2.0\n", "dma.toml"),
                 of_materials('[base]\nfile = "dma.toml"\n'),
             ],
-            "V is in m/s and km/h: must be in a unit of the dimension of m s-1": lambda: data(
-                "V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n"
+            "V is in m/s and km/h, a unit that is not known: must be in a unit of the": lambda: (
+                data("V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n")
+            ),
+            "delta is in deg, an angle: must be": lambda: data(
+                "V [m/s],delta [deg],Q [N/m]\n1,2,3\n", "traction"
             ),
             "3: is not a path": [
                 lambda: vr.tables.export(grid(), 3),

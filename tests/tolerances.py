@@ -526,6 +526,8 @@ COVER_MOMENT = 1e-10
 COVER_IN_C = 1e-11
 #: Differences over a millionth of V: their second order, and rounding over a millionth.
 COVER_SLOPES = 1e-6
+#: lam_Q and epsilon_Q over a step ten times as long: differences of second order, of 3e-4.
+COVER_STEP = 1e-7
 #: Motions whose energy is looked at.
 COVER_RTOL = 1e-9
 #: A thickness each, interpolated in its logarithm, against a law of its own; motions at rtol 1e-10.

@@ -185,6 +185,9 @@ REFUSED = [
             "unknown E | (1e+06, 2e+06) | the value with which the search starts, 3e+06": {
                 "unknown": {"E": (1e6, 2e6)}
             },
+            "standard deviation of prior E is in kPa: must be a number without dimension": {
+                "prior": {"E": (3e6, xr.DataArray(1.0, attrs={"units": "kPa"}))}
+            },
             "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
             "more points, fewer unknowns": {"data": vr.Resistance(0.1, 0.1)},
             "name = 'a': must be different for each record": {

@@ -74,12 +74,14 @@ from .files import section_error as section_error
 from .files import write_bytes as write_bytes
 from .files import write_dataset as write_dataset
 from .files import write_text as write_text
+from .quantities import CYCLES as CYCLES
 from .quantities import DIMENSIONLESS as DIMENSIONLESS
 from .quantities import DIMENSIONS as DIMENSIONS
 from .quantities import MEASURED as MEASURED
 from .quantities import SI as SI
 from .quantities import SYMBOLS as SYMBOLS
 from .quantities import TIME_POWERS as TIME_POWERS
+from .quantities import TURNS as TURNS
 from .quantities import UNITLESS_TYPES as UNITLESS_TYPES
 from .quantities import HasUnits as HasUnits
 from .quantities import Scale as Scale

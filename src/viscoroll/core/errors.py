@@ -135,20 +135,19 @@ def digits_beside(value: Any, *others: Any) -> str:
     )
 
 
-def unit_error(name: str, unit: str, target: str, known: bool = True) -> ParameterError:
+def unit_error(name: str, unit: str, target: str) -> ParameterError:
     """Return the ParameterError, not raised, of an argument in a unit that cannot be converted.
 
     name: name of the argument.
-    unit: unit that was found, of which 40 characters are quoted.
+    unit: unit that was found, perhaps with a remark; 99 characters are quoted.
     target: unit of the argument, "1" of a dimensionless number.
-    known: whether pint knows the unit; if not, the message says so.
     """
     allowed = (
         "a number without dimension"
         if target == "1"
         else f"in {target}, or in another unit of that dimension"
     )
-    found = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
+    found = f"in {unit:.99}"
     return ParameterError(name, found, allowed, f"{name} is {found}: must be {allowed}")
 
 

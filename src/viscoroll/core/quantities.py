@@ -243,6 +243,14 @@ def describe_quantity(name: str, si: bool = False) -> str:
 _SPELLINGS = str.maketrans("²³⁻¹·⋅µμ", "23-1  uu") | {ord("°"): "deg"}
 #: Symbol of a unit and its power: "m-1", "mm^2", "s**-2".
 _POWER = re.compile(r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
+#: Texts for the unit of a dimensionless number.
+_DIMENSIONLESS = ("", "1", "-", "dimensionless")
+#: Units of angles, turns and cycles, and of these per time.
+CYCLES = re.compile(
+    r"(?i)hz|hertz|count|[cr]p[ms]|rad|rev|cyc|circ|turn|osc|giri|tours|\b(?:[ucr]|tr|umdr)/|upm|u\s*min|deg|gon|arc|°"
+)
+#: Remark on an angular velocity in a unit that is none of these, as 1/min.
+TURNS = ", which may be of turns (rpm) or of radians (rad/s)"
 
 
 @lru_cache(maxsize=1)
@@ -263,27 +271,32 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
 
     unit, target: units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; ""
         and "1" of a ratio; 1 Hz is 2 pi rad/s.
-    Returns two floats, the offset in ``target``; it is 0 unless the units are temperatures with
-    different zeros.
+    Returns two floats; the offset, in ``target``, is 0 but for temperatures with different zeros.
     Raises ParameterError for a unit that pint does not know, or of another dimension than
-    ``target``.
+    ``target``; an angle for a ratio ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of
+    atan(0.05)), and, for an angular velocity ("rad s-1"), 1/min and others but 1/s.
     """
     import pint
 
     quantity = registry().Quantity
+    allowed = f"a unit of the dimension of {target}"
     try:
         at_0, at_1 = (
             quantity(number, pint_spelling(unit)).to(pint_spelling(target)).magnitude
             for number in (0.0, 1.0)
         )
     except pint.DimensionalityError:
-        raise ParameterError("unit", unit, f"a unit of the dimension of {target}") from None
+        raise ParameterError("unit", unit, allowed) from None
     except Exception as error:  # pint raises errors of its own parser and of Python's
-        raise ParameterError(
-            "unit", unit, f"a unit that pint knows, of the dimension of {target}"
-        ) from error
-    # Without an offset the factor is the converted 1 itself, so that exact factors stay exact: 1e6,
-    # not 1/1e-6.
+        raise ParameterError("unit", f"{unit:.40}, a unit that is not known", allowed) from error
+    says = CYCLES.search(unit) is not None
+    if unclear := {
+        "rad s-1": TURNS * (at_1 != 1.0 and not says),
+        "1": ", an angle" * says,
+        "rad": ", a ratio" * (not says and unit.strip() not in _DIMENSIONLESS),
+    }.get(target):
+        raise ParameterError("unit", unit + unclear, allowed)
+    # Without an offset the factor is the converted 1 itself, so that exact ones stay exact.
     return (at_1 - at_0, at_0) if at_0 else (at_1, 0.0)
 
 
@@ -315,17 +328,11 @@ UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np
 _UNITLESS_KINDS = frozenset("biufcUSM")
 #: Types of the elements of lists without a unit.
 _NUMBER_TYPES = frozenset((float, int))
-#: Texts for the unit of a dimensionless number.
-_DIMENSIONLESS = ("", "1", "-", "dimensionless")
-#: Hertz in a unit.  A cycle is 2 pi rad for an angular velocity; for other arguments its meaning is
-#: unclear.
+#: Hertz in a unit, which has a clear meaning for an angular velocity alone: 2 pi rad/s.
 _HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE)
-#: A fraction in a unit, which is not an angle: a slope of 5 % is one of atan(0.05).
-_FRACTION = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
 #: A unit in brackets at the end of the title of a column.
 _TITLE_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
-#: Labels of a series that are searched for the units of columns: more would take time, and a row of
-#: a table has fewer.
+#: Labels of a series that are searched for the units of columns: a row of a table has fewer.
 _MOST_COLUMNS = 100
 #: The only unit of arguments whose zero differs from that of other units of its dimension.
 _TEMPERATURE = "degC"
@@ -428,25 +435,19 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
     target: wanted unit, as "m s-1"; "1" of a dimensionless number, "rad" of an angle.
     Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers
     in ``target``: a float, a float64 array of the same shape with its labels, or a list of these.
-    Raises ParameterError for a unit that is unknown, of another dimension or of unclear meaning (Hz
-    for other arguments than an angular velocity, percent of an angle, differences of temperature),
-    and for numbers that are not numeric.
+    Raises ParameterError as :func:`conversion_factor`, for Hz of other arguments than an angular
+    velocity and differences of temperature, and for numbers that are not numeric.
     """
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
     if unit.strip() in _DIMENSIONLESS and target != "rad":
         raise unit_error(name, "units of 1, without dimension", target)
-    cycles = target != "rad s-1" and _HERTZ.search(unit)
-    if (
-        cycles
-        or (target == "rad" and _FRACTION.search(unit))
-        or (target == _TEMPERATURE and "delta" in unit)
-    ):
+    if "delta" in unit if target == _TEMPERATURE else target != "rad s-1" and _HERTZ.search(unit):
         raise unit_error(name, unit, target)
     try:
         factor, offset = conversion_factor(unit, target)
     except ParameterError as error:
-        raise unit_error(name, unit, target, known="pint knows" not in error.allowed) from None
+        raise unit_error(name, str(error.value), target) from None
     # where no temperature is wanted, an offset makes the meaning unclear: 20 degC or 20 K more
     if offset and target != _TEMPERATURE:
         raise unit_error(name, unit, target)

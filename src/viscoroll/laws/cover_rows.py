@@ -240,7 +240,8 @@ _MOMENTS = slice(3, 5)
 _FREE = slice(5, 7)
 #: functions that have a row each beside those of a table: L, f, g and the slopes
 _BESIDE = [_LIMIT, *range(5, _COUNT)]
-#: offset of the first of two solves in ln z, whose difference is the slope of load and shift over z
+#: offset in ln z of the first solve, and of one on the other side of the length found, whose
+#: differences are the slopes of load and shift over z
 _OFFSET = 3e-5
 #: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row
 #: in 1/u
@@ -380,15 +381,14 @@ def _solve_node(
     """Solve for the half contact length that carries the load at one speed, by the secant method.
 
     The unknown is ln z, z the half contact length divided by V T_ref; the equation is ln H = -ln(4
-    stiffness u^2) with the load H of :class:`.cover_solve.CoverState`.  At the end lam, L, epsilon
-    and M are extrapolated by the last secant step.
+    stiffness u^2) with the load H of :class:`.cover_solve.CoverState`.  lam, L, epsilon and M are
+    extrapolated by the last secant step; what shear does is that of the last solve.
     modes: :class:`CoverModes` of the bodies.
     u: kappa |V|, dimensionless, > 0.
-    start: first approximation of ln z, near enough for the first two solves to give slopes over z;
-        None: that of a half-space of a stiffness between slow and fast, shortened for a thin cover,
-        from which one is found first.
+    start: first approximation of ln z; None: that of a half-space of a stiffness between slow and
+        fast, shortened for a thin cover, from which one is found first.
     slope: first approximation of d ln H/d ln z, > 0; 2 is that of a half-space.
-    orders: number of terms of the pressure; None: the default of the solve.
+    orders: as in :func:`solve_at_speed`.
     stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the
         ``modes`` of elastic bodies; 1: the modes have their own stiffness.
     Returns (the quantities of a node, (11,), dimensionless; ln z after the last secant step; d ln
@@ -396,7 +396,6 @@ def _solve_node(
     Raises ParameterError where the secant method has not ended after 40 solves.
     """
     goal = -math.log(4.0 * stiffness * u * u)
-    thickness = modes.cover.thinnest
     if start is None:
         # the length of elastic half-spaces, z = e^(goal/2), divided by the root of a stiffness that
         # rises from 1 to alpha where u passes 1, and shortened where the layer is thinner than 0.2
@@ -404,20 +403,22 @@ def _solve_node(
         rough = (
             0.5 * goal
             - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0))
-            - math.log1p(0.2 / thickness)
+            - math.log1p(0.2 / modes.cover.thinnest)
         )
         start = _find_length(modes, u, y=rough, slope=slope, orders=orders, goal=goal)[0][-1]
-        # a slope as good as one that is extrapolated, for errors to be smooth over u
+        # a slope as good as one that is extrapolated
         y, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
-        start = y[-1]
-        slope = (errors[1] - errors[0]) / (y[1] - y[0])
+        start, slope = y[-1], (errors[1] - errors[0]) / (y[1] - y[0])
     y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
     slope = (errors[1] - errors[0]) / (y[1] - y[0])
     # epsilon = g/z of each solve; y has one entry more, the step after the last solve
     shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
-    shift_slope = (shifts[1] - shifts[0]) / (y[1] - y[0])
+    other = 2.0 * y[-1] - y[0]
+    beyond = solve(modes, math.exp(other), math.exp(other) * u, orders)
+    load_slope = (errors[0] + goal - math.log(beyond.load)) / (y[0] - other)
+    shift_slope = (shifts[0] - beyond.shift * math.exp(-other)) / (y[0] - other)
+    # lam = 2 z u, L = 2 u times the creep limit, epsilon, M/V
     found = [
-        # lam = 2 z u, L = 2 u times the creep limit, epsilon, M/V
         np.array([2.0 * math.exp(each) * u, 2.0 * u * state.creep_limit, shift, state.moment])
         for each, state, shift in zip(y, states, shifts)
     ]
@@ -427,10 +428,9 @@ def _solve_node(
     z = math.exp(y[-2])
     shear = shear_of(modes, z, states[-1])
     # d ln z/dQ by which the load stays the same
-    tilt = -shear.load / slope
+    tilt = -shear.load / load_slope
     slopes = lam * tilt, shear.shift / z + shift_slope * tilt
     free = 2.0 * u * shear.free
-    # the parts of the bodies, scaled to the extrapolated sum
     moments = shear.moments * (moment / shear.moments.sum() if modes.J.size else 0.0)
     values = np.array(
         [lam, L, epsilon, *moments, *free, *(2.0 * u * shear.mirrored - free), *slopes]

@@ -1,5 +1,5 @@
 """Columns of tests of materials: which columns of a table are frequency, moduli and temperature,
-and their numbers.
+and their numbers; and a column by the name that the user gives, in a unit (:func:`column_in_unit`).
 
 Names of columns in five languages, and the quantities that they mean, are read from headings.toml.
 """
@@ -14,10 +14,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import FileError, ParameterError, described_error, suggestion
+from ..core import (
+    CYCLES,
+    TURNS,
+    FileError,
+    Floats,
+    ParameterError,
+    described_error,
+    suggestion,
+    warn_of_model,
+)
 from ..materials import ABSOLUTE_ZERO
-from .text_cells import CYCLES, MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
-from .text_table import Table, find_column
+from .text_cells import MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
+from .text_table import Table, find_column, missing_column
 
 # --- Names of the columns of tests of materials in five languages ---
 
@@ -152,8 +161,6 @@ _RANGES = {
 _OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
 #: units of what instruments measure beside moduli, which end a heading without brackets
 _RAW = re.compile(r"[kmcdMµ]?N(?:\W?[cm]?m|/[cm]?m)?|kgf?|lbf?|[mµ]m|m?V")
-#: units of angles
-_ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
 
 
 class Column(NamedTuple):
@@ -341,10 +348,7 @@ def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]
             f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
             f"heading, or {unit_advice(name)}"
         )
-    # tan delta must not be in an angle and a phase angle must be, since pint converts the one to
-    # the other; None of other quantities
-    angle = {"1": False, "rad": True}.get(UNITS[name])
-    return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
+    return ""
 
 
 @np.errstate(all="ignore")  # a number beyond the doubles is infinite, which is refused
@@ -395,3 +399,84 @@ def numbers_of(table: Table, column: Column) -> Numbers:
         if name == "phase angle"
         else Numbers(values, half)
     )
+
+
+# --- A column of a table by the name that the user gives ---
+
+
+def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
+    """Return the numbers of the column with a name, converted to a unit.
+
+    Parameters
+    ----------
+    table : :class:`Table`, a table with headings.
+    name : name of the column, with its unit or without.
+    wanted : unit of the result in pint's spelling, "1" of a ratio.
+    unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the
+        heading or of the row of units.  Where none is given, or it is a sign as "-" or "1", the
+        numbers are taken to be in ``wanted``, with a warning unless that is "1" or "" itself.
+
+    Returns
+    -------
+    array of shape (n,)
+        The numbers, in the unit ``wanted``, float64; of a heading of logarithms the numbers of
+        which they are.
+
+    Raises
+    ------
+    FileError
+        No such column, several columns of that name, several tables in the file, cells that are no
+        numbers, gaps, or marks that may be separators of thousands (:meth:`Table.numbers`).
+    ParameterError
+        A unit that is unknown or of another dimension.
+
+    Warns
+    -----
+    ModelWarning
+        A column without a unit, whose numbers are taken to be in ``wanted``.
+    """
+    index = find_column(table, name)
+    if index is None:
+        raise missing_column(table, name)
+    table.refuse_several()
+    heading = table.headings[index]
+    if not unit and MULTIPLIED.search(heading):
+        unit = heading  # in which nothing is converted
+    found = readings(heading, table.units[index])
+    # a heading can be read in several ways: the unit is that of the way that gives this name, else
+    # of the likeliest way that has one; ``log`` is the same for all ways
+    named = [each for each in found if each.name == name]
+    unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
+    advice = f"write its unit in the heading, as in '{name} [{wanted}]'"
+    factor, offset = conversion_of_column(
+        table.path, heading, unit=unit, wanted=wanted, advice=advice
+    )
+    values = table.numbers(index).values
+    base = found[0].log if found else 0.0
+    return factor * (base**values if base else values) + offset
+
+
+def conversion_of_column(
+    path: Any, column: str, unit: str, wanted: str, advice: str
+) -> tuple[float, float]:
+    """Return factor and offset of the conversion of a column; numbers without a unit are taken to
+    be in the wanted one, with a :class:`ModelWarning`.
+
+    path: path of the file.
+    column: name of the column.
+    unit: its unit, a text of :data:`NO_UNIT` where it has none.
+    wanted: unit in which it is taken; "" and "1" give no warning.
+    advice: how the file states the unit.
+    Returns (factor, offset) of number in ``wanted`` = factor * number + offset.
+    Raises ParameterError for a unit that is unknown or of another dimension, and for what may be of
+    turns or of radians: an angular velocity in 1/min or such, and a column whose name says turns
+    and whose unit says neither.
+    """
+    found = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
+    if wanted == "rad s-1" and not CYCLES.search(unit):
+        if any(each.name == "rotational speed" for each in meanings(column)):
+            given = "numbers without a unit" if unit in NO_UNIT else unit
+            raise ParameterError("unit", given + TURNS, f"a unit of the dimension of {wanted}")
+    if unit in NO_UNIT and wanted not in ("", "1"):
+        warn_of_model(f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}")
+    return found

@@ -341,8 +341,9 @@ class SeriesFit(Result):
             and the fit at the same points, storage_fit and loss_fit or relaxation_fit, in the unit
             of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.
             Attributes: E_long, long-time modulus in the unit of the data; T_ref, s; title; modulus,
-            "tension" or "shear"; and misfit_storage and misfit_loss, or misfit, root mean squares
-            of relative errors, dimensionless.  The attribute ``units`` of the moduli is the text
+            "tension" or "shear"; temperature of the fit, degrees Celsius, where it is known; and
+            misfit_storage and misfit_loss, or misfit, root mean squares of relative errors,
+            dimensionless.  The attribute ``units`` of the moduli is the text
             "unit of the data".
 
         Examples
@@ -378,6 +379,8 @@ class SeriesFit(Result):
         }
         misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]
         about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
+        if self.temperature is not None:
+            about["temperature"] = self.temperature
         return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
 
     _summary = summarize_fit

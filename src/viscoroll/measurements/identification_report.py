@@ -7,15 +7,17 @@ the public attributes, ``_problem`` (:class:`.least_squares.Problem`), ``_likeli
 Functions of the other report read the public attributes of a :class:`.fit_results.SeriesFit` alone.
 """
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from .. import __version__
-from ..core import Dataset, SummaryRow
+from ..core import Dataset, SummaryRow, attributes
 from .master_curve import undetermined_shifts
 from .measurement_records import ROLLING
+from .unknowns import Unknown
 
 #: points of full slip in a motion below which the report says that mu rests on few
 _FEW = 5
@@ -25,6 +27,13 @@ _INADEQUATE = "the model does not describe the test, and the intervals mean noth
 _CLOSE = 0.9
 #: where a product by slopes holds
 _NEAR = " (linearised: valid only while each unknown changes by less than a fifth)"
+#: word behind the name of a column -> what it says of the quantity
+_ENDS = {
+    "low": "lower end of the band",
+    "high": "upper end of the band",
+    "fit": "by the best fit",
+    "sigma": "standard deviation",
+}
 #: fall of chi2 below the best fit from which on the report names a point of a profile
 _BETTER = 0.1
 
@@ -295,7 +304,8 @@ def as_dataset(fit: Any) -> Dataset:
     -------
     xarray.Dataset
         In SI units.  Over ``unknown``: value, stderr (infinite for an unknown that does not act),
-        and low and high of the 95 % interval, NaN on a side that is open.  Over (``unknown``,
+        and low and high of the 95 % interval, NaN on a side that is open; all in ``unit``, a
+        coordinate over ``unknown``.  Over (``unknown``,
         ``other``): correlation.  Over "RECORD point", for each record, with its name for RECORD and
         that of a coordinate or quantity for NAME: "RECORD NAME" of coordinates and data (a plan has
         no data), and "RECORD NAME fit" and "RECORD NAME sigma" of each quantity that was measured
@@ -341,12 +351,23 @@ def as_dataset(fit: Any) -> Dataset:
             data[f"{record_name} {name}"] = (
                 f"{record_name} point",
                 np.ravel(values),
-                {"units": record.unit(name.split()[0])},
+                column_attributes(name),
             )
     about = {"title": "Identification", "source": f"viscoroll {__version__}", "report": report(fit)}
-    return xr.Dataset(
-        data, {"unknown": names, "other": names}, about | {"chi2": fit.chi2, "dof": fit.dof}
-    )
+    units = [Unknown.bounds(name)["unit"] for name in fit.values]
+    coords = {"unknown": names, "other": names, "unit": ("unknown", np.array(units, object))}
+    return xr.Dataset(data, coords, about | {"chi2": fit.chi2, "dof": fit.dof})
+
+
+def column_attributes(name: str) -> dict[str, str]:
+    """Return long_name, units and what else :func:`.quantities.attributes` gives of a column of a
+    record in a dataset.
+
+    name: a field of the record, alone or with a key of :data:`_ENDS`, as "F", "Q_low" or "V fit".
+    """
+    quantity, *end = re.split("[_ ]", name)
+    found = attributes(quantity, si=True)
+    return found | {"long_name": ", ".join([found["long_name"], *(_ENDS[each] for each in end)])}
 
 
 def as_json(fit: Any) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from ..core import (
     described_error,
 )
 from ..core.plots.result_figures import identification
-from .identification_report import as_dataset, report
+from .identification_report import as_dataset, column_attributes, report
 from .least_squares import Minimum, Problem
 from .measurement_records import Record
 from .profile import Likelihood, Product
@@ -400,9 +400,13 @@ class Identification(Result):
             for name, row in zip(record.QUANTITIES, rows)
         }
         coordinates = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
-        own = {name: {"units": record.unit(name.split("_")[0])} for name in (*found, *coordinates)}
         return Prediction(
-            found, coordinates, own, f"Prediction, {level:.0%} bands", labels=record.labels
+            found,
+            coordinates,
+            {name: column_attributes(name) for name in (*found, *coordinates)},
+            f"Prediction, {level:.0%} bands",
+            si=True,
+            labels=record.labels,
         )
 
     def residuals(self, values: Mapping[str, float]) -> Floats:

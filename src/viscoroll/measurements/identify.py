@@ -6,7 +6,6 @@ and [[data]].
 
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from operator import attrgetter
 from os import PathLike
 from pathlib import Path
@@ -34,12 +33,11 @@ from ..core import (
 from ..materials import SECTIONS
 from ..presets import read_roller
 from ..rollers import Cylinder
-from .dma_columns import meanings
+from .dma_columns import column_in_unit, meanings
 from .identification_result import Identification
 from .least_squares import Minimum, Problem
 from .measurement_records import OF_RECORDS, Coastdown, Record, Resistance, Traction
-from .text_cells import CYCLES, NO_UNIT, conversion, readings
-from .text_table import Table, column_in_unit, find_column, missing_column, named_table
+from .text_table import Table, find_column, missing_column, named_table
 from .unknowns import Shift, Unknown, changes_law, cylinder_of, unknowns_of
 
 # --- Parameters of a cylinder from measurements ---
@@ -93,12 +91,15 @@ def identify(
         :class:`measurement_records.Traction` and :class:`measurement_records.Coastdown`, or one
         record.  All have values, or none has (a plan): then the result states the standard
         deviations to expect if the cylinder, without a bearing, is the truth.
-    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand, SI,
-        None without; the standard deviation is that of the natural logarithm, dimensionless, but
-        for brake, drag, nu and unknowns of records, of which it is that of the value, SI.
+    prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand, SI or
+        with units, None without; the standard deviation is that of the natural logarithm,
+        dimensionless, but for brake, drag, nu and unknowns of records, of which it is that of the
+        value, SI.
     shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function that
-        takes degrees Celsius and returns a_T, 1 at the temperature of the cylinder; where its
-        bodies differ {"material": ..., "base": ...}; None: the shifts of the materials themselves.
+        takes degrees Celsius and returns a_T, relative to any temperature, as for
+        :meth:`Material.at`: a material without a temperature is taken to be where a_T is 1; where
+        its bodies differ {"material": ..., "base": ...}; None: the shifts of the materials
+        themselves.
     robust : let outliers count less, as |r| in place of r^2, of data and prior.
     starts : number of searches, >= 1, the first from the cylinder, the others from points spread
         over the ranges; of a plan only the first.  Two more are made where the first one ends far
@@ -496,7 +497,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         of, that is missing; other columns where none is a quantity, since one of them may be; a
         cell that is no number.
     ParameterError
-        A column whose unit has another dimension.
+        A column whose unit has another dimension, or may be of turns or of radians.
 
     Warns
     -----
@@ -533,10 +534,8 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     if others:
         warn_of_model(f"{path.name}: unused columns: {', '.join(others)}")
     found = {}
-    for name, place in present.items():
+    for name in present:
         unit = kind.unit(name)
-        if name == "omega":
-            _refuse_unclear_turns(table, place, section.units.get(name, ""))
         try:
             found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
@@ -571,26 +570,3 @@ def _said(table: Table, names: set[str]) -> dict[str, str]:
             advice = f"write one in [[data]], as columns = {{ {name} = {first!r} }}"
             raise FileError(table.path, f"{first!r} and {others[0]!r} may both be {name}: {advice}")
     return {name: first for name, (first, *_) in found.items()}
-
-
-def _refuse_unclear_turns(table: Table, index: int, unit: str) -> None:
-    """Raise FileError for an angular velocity in 1/min or such: of turns, or of radians; and for
-    turns without a unit.
-
-    table, index : :class:`.text_table.Table` and column; an angular one in 1/s is in rad/s.
-    unit : unit that the user gives, "" for that of the file.
-    """
-    heading = table.headings[index]
-    turns = "rotational speed" in {each.name for each in meanings(heading, table.units[index])}
-    stated = {each.unit for each in readings(heading, table.units[index])}
-    units = ({unit} if unit else stated).difference(NO_UNIT)
-    doubtful = "no unit" if turns and not units else ""
-    for each in units:
-        with suppress(ParameterError):
-            factor, _ = conversion(each, "rad/s")
-            if not CYCLES.search(each) and (factor != 1.0 or (turns and not unit)):
-                doubtful = f"the unit {each}"
-    if doubtful:
-        problem = f"column {heading!r} has {doubtful}, and may be of turns or of radians"
-        advice = 'write in [[data]] units = { omega = "UNIT" } with rpm, rev/s or rad/s'
-        raise FileError(table.path, f"{problem}: {advice}")

@@ -148,7 +148,7 @@ class Record:
         >>> vr.Resistance.unit("F"), vr.Traction.unit("delta")
         ('N m-1', '1')
         """
-        return si_unit("force" if name == "F" else name)
+        return si_unit(name)
 
     def label(self, name: str) -> str:
         """Return the name of a field as messages have it.

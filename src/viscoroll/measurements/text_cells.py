@@ -298,10 +298,6 @@ MULTIPLIED = re.compile(
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
 _POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!\d)[)}]?")
-#: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
-CYCLES = re.compile(
-    r"(?i)hz|hertz|[cr]p[ms]|rad|rev|cyc|circ|turn|osc|giri|tours|[ucr]/|upm|u\s*min|deg|gon|arc|°"
-)
 #: rounding of factors of conversion
 _ROUNDING = 1e-9
 #: longest text that may be a unit

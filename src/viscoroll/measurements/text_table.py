@@ -1,6 +1,6 @@
 """The table in a text file: its headings, its row of units and its rows of numbers
 (:func:`read_table`); and columns by the name that the user gives (:func:`named_table`,
-:func:`column_in_unit`).
+:func:`find_column`).
 """
 
 import re
@@ -12,16 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from ..core import FileError, Floats, ParameterError, is_unit, suggestion, warn_of_model
+from ..core import FileError, ParameterError, is_unit, suggestion
 from .text_cells import (
-    CYCLES,
-    MULTIPLIED,
     NO_UNIT,
     SEPARATORS,
     Line,
     Numbers,
     are_numbers,
-    conversion,
     cut_by_blanks,
     cut_lines,
     decimal_mark,
@@ -497,78 +494,3 @@ def missing_column(table: Table, name: str, advice: str = "") -> FileError:
         f"has no column {name!r}; its columns are {', '.join(map(repr, table.headings))}"
         f"{suggestion(name, table.headings)}{advice}",
     )
-
-
-def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
-    """Return the numbers of the column with a name, converted to a unit.
-
-    Parameters
-    ----------
-    table : :class:`Table`, a table with headings.
-    name : name of the column, with its unit or without.
-    wanted : unit of the result in pint's spelling, "1" of a ratio.
-    unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the
-        heading or of the row of units.  Where none is given, or it is a sign as "-" or "1", the
-        numbers are taken to be in ``wanted``, with a warning unless that is "1" or "" itself.
-
-    Returns
-    -------
-    array of shape (n,)
-        The numbers, in the unit ``wanted``, float64; of a heading of logarithms the numbers of
-        which they are.
-
-    Raises
-    ------
-    FileError
-        No such column, several columns of that name, several tables in the file, cells that are no
-        numbers, gaps, or marks that may be separators of thousands (:meth:`Table.numbers`).
-    ParameterError
-        A unit that is unknown or of another dimension.
-
-    Warns
-    -----
-    ModelWarning
-        A column without a unit, whose numbers are taken to be in ``wanted``.
-    """
-    index = find_column(table, name)
-    if index is None:
-        raise missing_column(table, name)
-    table.refuse_several()
-    heading = table.headings[index]
-    if not unit and MULTIPLIED.search(heading):
-        unit = heading  # in which nothing is converted
-    found = readings(heading, table.units[index])
-    # a heading can be read in several ways: the unit is that of the way that gives this name, else
-    # of the likeliest way that has one; ``log`` is the same for all ways
-    named = [each for each in found if each.name == name]
-    unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
-    advice = f"write its unit in the heading, as in '{name} [{wanted}]'"
-    factor, offset = conversion_of_column(
-        table.path, heading, unit=unit, wanted=wanted, advice=advice
-    )
-    values = table.numbers(index).values
-    base = found[0].log if found else 0.0
-    return factor * (base**values if base else values) + offset
-
-
-def conversion_of_column(
-    path: Any, column: str, unit: str, wanted: str, advice: str
-) -> tuple[float, float]:
-    """Return factor and offset of the conversion of a column; numbers without a unit are taken to
-    be in the wanted one, with a :class:`ModelWarning`.
-
-    path: path of the file.
-    column: name of the column.
-    unit: its unit, a text of :data:`NO_UNIT` where it has none.
-    wanted: unit in which it is taken; "" and "1" give no warning.
-    advice: how the file states the unit.
-    Returns (factor, offset) of number in ``wanted`` = factor * number + offset.
-    Raises ParameterError for a unit that is unknown or of another dimension, and for an angular
-    velocity in 1/min or such, which may be of turns or of radians.
-    """
-    if unit in NO_UNIT and wanted not in ("", "1"):
-        warn_of_model(f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}")
-    found = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
-    if wanted == "rad s-1" and found[0] != 1.0 and not CYCLES.search(unit):
-        raise ParameterError("unit", unit, "rpm or rad/s, as it may be of turns or of radians")
-    return found

@@ -145,16 +145,20 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     name : name of the unknown.
     start : start value, SI; it may be at an end of the range.
     span : range of the unknown, (low, high), in SI units or with units.
-    prior : (value, standard deviation) known beforehand, or None.  The latter is of the natural
-        logarithm of the value, of linear unknowns (brake, drag, nu, those of records) in their SI
-        unit.
+    prior : (value, standard deviation) known beforehand, each in SI units or with a unit of its
+        own, or None.  The latter is of the natural logarithm of the value, dimensionless, of linear
+        unknowns (brake, drag, nu, those of records) in their SI unit.
     Returns an :class:`Unknown`, whose ``mean`` and ``sd`` are those of its coordinate; without a
     prior they are 0 and infinite.  Its ``unit`` is None, of linear unknowns the larger of |start|
     and a tenth of the width of the range.
     Raises ParameterError for a range that does not ascend or does not contain the start, and for a
     prior that is none.
     """
-    low, high = _check_pair("unknown", name, span)
+    bounds = Unknown.bounds(name)
+    pair = check_array(f"unknown {name}", span, **bounds)
+    if pair.shape != (2,) or not pair[0] < pair[1]:
+        raise ParameterError(f"unknown {name}", describe_value(span), "(low, high) with low < high")
+    low, high = pair.tolist()
     if not low <= start <= high:
         raise ParameterError(
             f"unknown {name}",
@@ -171,37 +175,16 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     )
     if prior is None:
         return unknown
-    mean, sd = _check_pair("prior", name, prior)
-    sd = check_number(f"standard deviation of prior {name}", sd, above=0.0)
+    try:
+        value, sd = prior
+    except (TypeError, ValueError):
+        allowed = "(value, standard deviation)"
+        raise ParameterError(f"prior {name}", describe_value(prior), allowed) from None
+    mean = unknown.to_u(check_number(f"prior {name}", value, **bounds))
     # without a unit the coordinate is the logarithm, whose standard deviation is given
-    return unknown._replace(mean=float(unknown.to_u(mean)), sd=sd / (unknown.unit or 1.0))
-
-
-def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
-    """Check a range or a prior of an unknown, and return its two numbers as a list of floats.
-
-    argument : "unknown" for a range, which must ascend, or "prior" for value and standard
-        deviation; it is named in the message.
-    name : name of the unknown.
-    numbers : the pair; a range may have units, a prior may not.
-    Returns [low, high], in SI units; or of a prior [value, standard deviation], the value in SI
-    units, the standard deviation that of ln(value), dimensionless, or for a linear unknown that of
-    the value, in SI units.  The bounds of a value are applied to both numbers.
-    Raises ParameterError for another number of them, values out of bounds, and for a range that
-    does not ascend.
-    """
-    bounds = Unknown.bounds(name)
-    if argument == "prior":  # its two numbers may have different units, so that none is taken
-        del bounds["unit"]
-    pair = check_array(f"{argument} {name}", numbers, **bounds)
-    if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):
-        allowed = (
-            "(low, high) with low < high"
-            if argument == "unknown"
-            else "(value, standard deviation)"
-        )
-        raise ParameterError(f"{argument} {name}", describe_value(numbers), allowed)
-    return pair.tolist()
+    unit = bounds["unit"] if linear else "1"
+    sd = check_number(f"standard deviation of prior {name}", sd, unit=unit, above=0.0)
+    return unknown._replace(mean=float(mean), sd=sd / (unknown.unit or 1.0))
 
 
 def cylinder_of(

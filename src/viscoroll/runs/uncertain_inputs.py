@@ -560,8 +560,9 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     has several axes or has values that are no finite numbers; MissingDependencyError for .parquet
     without pyarrow.
     """
+    from ..measurements.dma_columns import column_in_unit, conversion_of_column
     from ..measurements.text_cells import MULTIPLIED, readings
-    from ..measurements.text_table import column_in_unit, conversion_of_column, named_table
+    from ..measurements.text_table import named_table
 
     if path.suffix == ".csv":
         values = column_in_unit(named_table(path, (column,)), column, unit)
