@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 import tolerances as tol
+import xarray as xr
 from closeness import close
 from refusals import each, refused
 from scipy.integrate import trapezoid
@@ -223,6 +224,15 @@ def test_warming_under_a_schedule():
     assert close(once.temperature[1], then.temperature[0], tol.WARMING)
 
 
+def test_warming_keeps_the_labels_of_its_states():
+    """Also of as many states as times, along an axis of the name t."""
+    days = xr.DataArray([-5.0, 10.0], dims="t", coords={"t": ["Monday", "Friday"]})
+    course = ROLLER.warming(2.0, [0.0, 60.0], ambient=days, conductance=6.0, capacity=9e3)
+    assert course.temperature.dims == ("given_t", "t")
+    data = course.to_xarray().sel(given_t="Friday", t=0.0)
+    assert data.temperature == data.ambient == 10.0
+
+
 # --- limits ---
 
 
@@ -241,6 +251,15 @@ def test_limits_are_those_of_the_equilibria():
     # the lower two lie between nodes of the curve
     assert balanced(less, **COLD)
     assert less.stable.tolist() == [True, False, True]
+
+
+def test_limit_of_a_cover():
+    """The temperature at the load that was found is the allowed one."""
+    cover = ROLLER.replace(material=dataclasses.replace(RUBBER, thickness=0.03), load=3.4e4)
+    found = cover.heat_limit(70.0, V=-2.0, **MILD)
+    at = cover.replace(load=found.load).temperature(-2.0, **MILD)
+    assert close(at.temperature, [70.0], tol.HEAT_LIMIT)
+    assert not found.runaway
 
 
 def test_turning_points():
@@ -307,6 +326,7 @@ REFUSED = each(
     None,
     {
         "above ambient": lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD),
+        "has no Material": lambda: vr.presets.RUBBER_ROLLER.heat_limit(70.0, load=1.0, **COLD),
         "below R": lambda: vr.conductance(0.1, thickness=0.2),
         "one a_T for each": lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0),
         "a_T = ": lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0),

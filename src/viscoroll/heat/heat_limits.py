@@ -35,7 +35,7 @@ from ..core import (
     shape_error,
     strip_labels,
 )
-from .heated_bodies import NODES, check_ambient, heat_states
+from .heated_bodies import NODES, check_ambient, heat_states, heated_body, shift_curve
 from .temperature import HOTTEST, zeros_at_speed
 
 # --- Limits ---
@@ -57,8 +57,10 @@ _TOLERANCE = {"xatol": 1e-13, "xrtol": 1e-15}
 #: Part of the allowed rise by which a limit misses it, from which on it is a runaway: at the end of
 #: a branch the temperature has an error of the square root of that of ln V.
 _SHORT = 1e-5
-#: Distance of ln of a load of a cover from a limit at which it is found: each is a law of its own.
-_COVER_TOLERANCE = 1e-6
+#: Steps of ln of a load of a cover after which its limit is found, by the fast law and that of the
+#: roller: a hundredth of a step is left.  Slope of ln heat by which the secant method starts.
+_COVER_STEPS = 1e-2, 1e-4
+_RISE = 1.5
 
 
 class TurningPoints(NamedTuple):
@@ -131,10 +133,12 @@ def heat_limit(
     The limits are those of :func:`temperature` to 1e-8, relative (``tests/test_heat.py``).
     """
     _, scene, scale = resolve_model(roller, "heat_limit")
+    curve = shift_curve(heated_body(roller, "heat_limit", 0.5).material)
     name = check_one_given(V=V, load=load)
     given = {name: V if load is None else load, "ambient": ambient, "conductance": conductance}
     plain, labels = strip_labels(given, scale)
     allowed = check_number("allowed", allowed, unit=SI)
+    check_ambient(np.asarray(allowed), curve, "allowed")
     value = check_array(name, plain[name], above=0.0 if name == "load" else -math.inf)
     if name == "V" and not value.all():
         raise described_error("V", "is 0, where the roller stays cold", "other than 0")
@@ -172,7 +176,6 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
     if "load" in given:
         roller = roller.replace(load=given["load"])
     states = heat_states(roller, roller.scene(), "heat_limit", given)
-    check_ambient(np.asarray(allowed), states.curve, "allowed")
 
     def above(ln: Floats, n: Integers) -> Floats:
         """Return the coldest equilibrium less the allowed temperature, K, (m,).
@@ -209,7 +212,9 @@ def _limit_of_cover(
 ) -> tuple[Any, ...]:
     """Return :func:`_limits` of one state of a cover, of which every load has a law of its own.
 
-    With V given the load is sought at which the largest speed is V, by the secant method.
+    With V given, a load is below the limit if at some temperature up to the allowed one the body
+    gets less heat than it gives off.  The secant method has the fast law first, then the law of the
+    roller, since a table of the coupled solution takes seconds.
 
     roller: the cylinder with the cover.
     allowed: allowed temperature, degrees Celsius.
@@ -217,20 +222,29 @@ def _limit_of_cover(
     given: ambient and conductance, numbers.
     Raises ParameterError where a load on the way to the limit makes the cover too thin for its law.
     """
-    from scipy.optimize import root_scalar
-
     if load is not None:
         return _limits(roller, allowed, given | {"load": load})
-
-    def faster(ln: float) -> float:
-        limit = _limits(roller, allowed, given | {"load": math.exp(ln)})
-        return math.log(limit[0] / abs(V))
-
-    # a first step as if the largest speed changed as 1/load
-    start = math.log(roller.load)
-    found = root_scalar(faster, x0=start, x1=start + faster(start), xtol=_COVER_TOLERANCE)
-    load = math.exp(found.root)
-    return load, *_limits(roller, allowed, given | {"load": load})[1:]
+    ln, slope, value = math.log(roller.load), _RISE, 0.0
+    for coupled, last in zip((False, roller.coupled), _COVER_STEPS, strict=True):
+        step = math.inf
+        while abs(step) > last:
+            at = roller.replace(load=math.exp(ln), coupled=coupled)
+            states = heat_states(at, at.scene(), "heat_limit", given | {"V": V})
+            # without ambient, where no heat is given off; then closer and closer about the least
+            theta = states.curve.nodes(given["ambient"], allowed)[1:]
+            for _ in range(4):
+                heat = states.heat(np.zeros(theta.size, np.int64), theta, V)
+                ratio = heat / (given["conductance"] * (theta - given["ambient"]))
+                k = int(ratio.argmin())
+                worst = float(theta[k])
+                low, high = theta[max(k - 1, 0) : k + 2][[0, -1]]
+                theta = np.linspace(low, high, 65)
+            before, value = value, math.log(ratio[k])
+            slope = slope if step == math.inf else (value - before) / step
+            # at most by a factor e, beyond which the cover may be too thin
+            step = min(max(-value / slope, -1.0), 1.0)
+            ln += step
+    return math.exp(ln), worst, worst < allowed
 
 
 def turning_points(roller: Roller, *, ambient: float, conductance: float) -> TurningPoints:
@@ -361,12 +375,7 @@ def conductance(
     12.566
     """
     check_choice("core", core, "cooled", "insulated")
-    given: dict[str, Any] = {
-        "R": R,
-        "film": film,
-        "thickness": thickness,
-        "conductivity": conductivity,
-    }
+    given: Any = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
     arrays = {
         name: check_array(name, x, unit=SI, above=0.0) for name, x in given.items() if x is not None
     }
@@ -429,10 +438,8 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
     >>> vr.uniform_temperature(film=10.0, thickness=0.01, conductivity=0.25).holds
     True
     """
-    given = {"film": film, "thickness": thickness, "conductivity": conductivity}
-    film, thickness, conductivity = (
-        check_number(name, x, unit=SI, above=0.0) for name, x in given.items()
-    )
+    given = {"film": film, "thickness": thickness, "conductivity": conductivity}.items()
+    film, thickness, conductivity = (check_number(name, x, unit=SI, above=0.0) for name, x in given)
     biot = film * thickness / conductivity
     # a slab with even sources, cooled on one side: the rise of the hottest point and the mean,
     # both divided by that of the surface
@@ -574,8 +581,8 @@ def warming(
         if np.ndim(plain[name])
     }
     shape = *states.shape, times.size
-    found_values = {name: each.reshape(shape) for name, each in values.items()}
-    return Values(found_values, about, si=True, title="Warming of a roller", labels=labels)
+    rows = {name: each.reshape(shape) for name, each in values.items()}
+    return Values(rows, about, si=True, title="Warming of a roller", labels=labels, further=("t",))
 
 
 def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
