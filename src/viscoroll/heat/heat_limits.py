@@ -40,22 +40,22 @@ from .temperature import HOTTEST, zeros_at_speed
 
 # --- Limits ---
 
-#: Film coefficient of a turning roller in still to moving air, W/(m2 K): near the geometric mean of
-#: 10 to 50, the range of forced convection and radiation at surface speeds of 0.5 to 10 m/s.
+#: Film coefficient of a turning roller, W/(m2 K): near the geometric mean of 10 to 50, the range of
+#: forced convection and radiation at surface speeds of 0.5 to 10 m/s.
 DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab
 #: with an insulated side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
 BIOT_LIMIT = 0.75
-#: Speed up to which turning points are returned, m/s: beyond it no roller runs, and the loss of a
-#: cold rubber no longer depends on the speed to rounding.
+#: Speed up to which turning points are returned, m/s: beyond it the loss of a cold rubber no longer
+#: depends on the speed to rounding.
 FASTEST = 1e4
 #: ln of V, m/s, and of the load over that given, between which limits are sought: beyond them no
 #: roller runs.
 _LN_RANGE = -70.0, 70.0
 #: Distance of ln V and of ln of a load from a limit at which it is found.
 _TOLERANCE = {"xatol": 1e-13, "xrtol": 1e-15}
-#: Part of the allowed rise by which a limit misses it, from which on it is a runaway: at the end of
-#: a branch the temperature has an error of the square root of that of ln V.
+#: Part of the allowed rise by which a runaway misses it: at the end of a branch the temperature has
+#: an error of the square root of that of ln V.
 _SHORT = 1e-5
 #: Steps of ln of a load of a cover after which its limit is found, by the fast law and that of the
 #: roller: a hundredth of a step is left.  Slope of ln heat by which the secant method starts.
@@ -89,8 +89,7 @@ def heat_limit(
     """Find the largest load at each speed, or the largest speed at each load, at which a roller
     stays cool enough.
 
-    It starts at ambient temperature, rolls freely, and must not pass the allowed temperature at any
-    time.
+    It starts at ambient temperature, rolls freely, and never passes the allowed temperature.
 
     Parameters
     ----------
@@ -105,15 +104,13 @@ def heat_limit(
     Values
         ``load`` (N/m) of given V, or ``V`` (m/s, > 0; infinite where no speed is too fast) of given
         loads; ``temperature``, from which a larger one leads beyond the allowed temperature: the
-        allowed one, or below it the one at which the cold branch ends; ``runaway``, whether that is
-        so.
+        allowed one, or that at which the cold branch ends; ``runaway``, whether it is the latter.
 
     Raises
     ------
     ParameterError
-        As in :func:`temperature`; both or neither of V and load, V = 0, an allowed
-        temperature that is not above ambient or beyond the range of the shift, a load of a cover
-        that is too thin for its law.
+        As in :func:`temperature`; both or neither of V and load, V = 0, an allowed temperature not
+        above ambient or beyond the range of the shift, a load at which a cover is too thin.
 
     Examples
     --------
@@ -194,7 +191,7 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
 
     every = np.arange(states.load.size)
     found = find_root(above, _LN_RANGE, args=(every,), tolerances=_TOLERANCE)
-    # the last point below the limit: at the end of a branch it misses the allowed temperature
+    # the last below the limit: at the end of a branch it misses the allowed temperature
     below = np.where(found.success, found.bracket[0], 0.0)
     short = -above(below, every)
     runaway = found.success & (short > _SHORT * (allowed - states.ambient))
@@ -212,15 +209,13 @@ def _limit_of_cover(
 ) -> tuple[Any, ...]:
     """Return :func:`_limits` of one state of a cover, of which every load has a law of its own.
 
-    With V given, a load is below the limit if at some temperature up to the allowed one the body
-    gets less heat than it gives off.  The secant method has the fast law first, then the law of the
-    roller, since a table of the coupled solution takes seconds.
+    A load is below the limit if the body gets less heat than it gives off at some temperature up to
+    the allowed one.  The secant method has the fast law first, as a table takes seconds.
 
-    roller: the cylinder with the cover.
-    allowed: allowed temperature, degrees Celsius.
+    roller, allowed: as in :func:`_limits`.
     load, V: N/m and m/s, one of the two, a number; None: it is sought.
     given: ambient and conductance, numbers.
-    Raises ParameterError where a load on the way to the limit makes the cover too thin for its law.
+    Raises ParameterError for a load on the way at which the cover is too thin.
     """
     if load is not None:
         return _limits(roller, allowed, given | {"load": load})
@@ -230,7 +225,7 @@ def _limit_of_cover(
         while abs(step) > last:
             at = roller.replace(load=math.exp(ln), coupled=coupled)
             states = heat_states(at, at.scene(), "heat_limit", given | {"V": V})
-            # without ambient, where no heat is given off; then closer and closer about the least
+            # without ambient, where no heat is given off
             theta = states.curve.nodes(given["ambient"], allowed)[1:]
             for _ in range(4):
                 heat = states.heat(np.zeros(theta.size, np.int64), theta, V)
@@ -241,7 +236,7 @@ def _limit_of_cover(
                 theta = np.linspace(low, high, 65)
             before, value = value, math.log(ratio[k])
             slope = slope if step == math.inf else (value - before) / step
-            # at most by a factor e, beyond which the cover may be too thin
+            # by a factor e at most
             step = min(max(-value / slope, -1.0), 1.0)
             ln += step
     return math.exp(ln), worst, worst < allowed
