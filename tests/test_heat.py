@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 import tolerances as tol
+import xarray as xr
 from closeness import close
 from long_cases import long
 from refusals import each, refused
@@ -145,17 +146,21 @@ def test_vertical_shift_scales_the_moduli(base):
 
 
 @pytest.mark.long
-def test_cover_follows_its_own_law():
-    """Free rolling of a cover is steady rolling without torque, whose loss is in balance, by the
-    coupled solution.
+@pytest.mark.parametrize("given", [{"thickness": 0.03}, {"nu": 0.3}])
+def test_coupled_bodies_follow_their_own_law(given):
+    """Free rolling of a cover, and of a half-space with a Dundurs' constant above 0.05, is steady
+    rolling without torque, whose loss is in balance, by the coupled solution.
     """
-    cover = ROLLER.replace(material=dataclasses.replace(RUBBER, thickness=0.03), coupled=None)
-    found = cover.temperature(2.0, **MILD)
-    at = cover.replace(material=cover.material.at(float(found.temperature[0])))
+    roller = ROLLER.replace(material=dataclasses.replace(RUBBER, **given), coupled=None)
+    found = roller.temperature(2.0, **MILD)
+    at = roller.replace(material=roller.material.at(float(found.temperature[0])))
     rolling = at.steady(V=2.0, torque=0.0)
     assert close(found.M, rolling.M, 1e-12)
     assert close(found.loss - found.loss_slip, rolling.loss.cylinder, 1e-12)
     assert balanced(found, **MILD)
+    if "nu" in given:  # of a cover each load has a table of its own
+        limit = roller.heat_limit(found.temperature[0], V=2.0, **MILD)
+        assert close(limit.load, roller.load, tol.HEAT_LIMIT)
 
 
 def test_two_bodies_with_a_temperature_each():
@@ -230,6 +235,15 @@ def test_warming_under_a_schedule():
     assert close(once.temperature[1], then.temperature[0], tol.WARMING)
 
 
+def test_warming_keeps_the_labels_of_its_states():
+    """Also of as many states as times, along an axis of the name t."""
+    days = xr.DataArray([-5.0, 10.0], dims="t", coords={"t": ["Monday", "Friday"]})
+    course = ROLLER.warming(2.0, [0.0, 60.0], ambient=days, conductance=6.0, capacity=9e3)
+    assert course.temperature.dims == ("given_t", "t")
+    data = course.to_xarray().sel(given_t="Friday", t=0.0)
+    assert data.temperature == data.ambient == 10.0
+
+
 # --- limits ---
 
 
@@ -252,6 +266,15 @@ def test_limits_are_those_of_the_equilibria():
     # the lower two lie between nodes of the curve
     assert balanced(less, **COLD)
     assert less.stable.tolist() == [True, False, True]
+
+
+def test_limit_of_a_cover():
+    """The temperature at the load that was found is the allowed one."""
+    cover = ROLLER.replace(material=dataclasses.replace(RUBBER, thickness=0.03), load=3.4e4)
+    found = cover.heat_limit(70.0, V=-2.0, **MILD)
+    at = cover.replace(load=found.load).temperature(-2.0, **MILD)
+    assert close(at.temperature, [70.0], tol.HEAT_LIMIT)
+    assert not found.runaway
 
 
 def test_turning_points():
@@ -318,6 +341,7 @@ REFUSED = each(
     None,
     {
         "above ambient": lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD),
+        "has no Material": lambda: vr.presets.RUBBER_ROLLER.heat_limit(70.0, load=1.0, **COLD),
         "below R": lambda: vr.conductance(0.1, thickness=0.2),
         "one a_T for each": lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0),
         "a_T = ": lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0),

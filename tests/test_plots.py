@@ -68,5 +68,8 @@ def test_equilibria_of_heat():
     found = roller.temperature([1.0, 2.0], ambient=20.0, conductance=6.0)
     stable, _ = found.plot().axes[0].lines
     assert np.array_equal(stable.get_ydata(), found.temperature[found.stable])
+    limit = roller.heat_limit(70.0, load=[1e4, 2e4], ambient=20.0, conductance=6.0)
+    (line,) = limit.plot().axes[0].lines
+    assert np.array_equal(line.get_ydata(), limit.V)
     with pytest.raises(vr.ParameterError, match="a plot needs"):
         roller.stress([], 1.0, delta=0.0).plot()

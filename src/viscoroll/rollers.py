@@ -144,7 +144,8 @@ class Scene(Methods, Parameters):
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref,
         in which a series counts its times.  A law of :func:`viscoroll.load_law` stands for its
         material, or its alpha.  A :class:`viscoroll.Cover` is a layer of finite thickness.
-    coupled : as in :class:`Cylinder`; :class:`Bodies` without ``poisson`` are uncoupled.
+    coupled : as in :class:`Cylinder`; :class:`Bodies` without ``poisson`` are uncoupled; of a grid
+        it has no effect.
 
     Raises
     ------
@@ -201,8 +202,9 @@ class Cylinder(Methods):
     load : normal force P, N/m, > 0; default: the weight m g.
     coupled : whether states with traction of a layer, and of half-spaces with Dundurs' constant
         above 0.05, are those of the coupled solution, by a table that is made at first use; None
-        (default): they are.  False: those of the fast law, which takes coupling to first order
-        (:func:`viscoroll.validity` states its error).
+        (default): they are, or those of the law that was given as ``material``.  False: those of
+        the fast law, which takes coupling to first order (:func:`viscoroll.validity` states its
+        error).
 
     Raises
     ------
@@ -331,8 +333,8 @@ class Cylinder(Methods):
         """
         if self.T_epsilon is None or not self._sls_parameters:
             return self.pair.T_ref
-        several = np.ndim(self.T_epsilon)
-        return float(np.max(self.T_epsilon, initial=0.0)) if several else self.T_epsilon
+        # 1 s without cylinders
+        return float(np.max(self.T_epsilon, initial=0.0)) or 1.0
 
     def replace(self, **changes: Any) -> Cylinder:
         """Return a copy of the cylinder with some parameters changed.
@@ -522,7 +524,7 @@ class Cylinder(Methods):
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
             if self.coupled is not False:
                 self.pair.refuse_coupled_ratios(law, DUNDURS_LIMIT)
-        scene = scene_of(
+        return scene_of(
             self.R,
             self.m,
             load=self.load,
@@ -531,8 +533,8 @@ class Cylinder(Methods):
             law=law,
             mu=self.mu,
             j=self.j,
+            coupled=self.coupled,
         )
-        return scene.replace(coupled=self.coupled)
 
     @cached_property
     def body_data(self) -> BodyData:
@@ -567,9 +569,7 @@ class Cylinder(Methods):
         return {MEASURED: [rate * self.l0 for rate in rates]}
 
 
-def scene_of(
-    R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: Any, j: Any
-) -> Scene:
+def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, **others: Any) -> Scene:
     """Return the scene of one cylinder or of many; the arguments are numbers or arrays (n,),
     unchecked.
 
@@ -580,7 +580,7 @@ def scene_of(
     T_ref: unit of time, s, a number or (n,).
     law: alpha, a float or an array (n,), no int, or a material of a scene (series, bodies, cover or
         :class:`LawTable`), with times divided by ``T_ref``.
-    mu, j: coefficient of friction, and moment of inertia divided by m R^2, dimensionless.
+    others: mu, j and perhaps coupled of the scene.
     Returns the :class:`Scene`, whose kappa is R/l0 and whose gamma is P T_ref^2/(m R).
     Raises ParameterError, by the names of the scene's parameters, where these are out of range or
     overflow, or their shapes do not broadcast; ValueError of numpy where those of R, load and
@@ -594,4 +594,4 @@ def scene_of(
     check_array("kappa (R divided by the contact length at rest)", kappa, above=0.0)
     check_array("gamma (load times T_ref^2, divided by m R)", gamma, above=0.0)
     material = "alpha" if isinstance(law, float | np.ndarray) else "material"
-    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{material: law})
+    return Scene(kappa=kappa, gamma=gamma, **others, **{material: law})

@@ -198,3 +198,9 @@ def test_each_of_many_is_as_alone(name):
         assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, tol.SI_MOTION)
     again = roller.replace(**{key: values.copy() for key, values in each.items()})
     assert (many, hash(many)) == (again, hash(again))
+
+
+def test_no_cylinders_have_no_states():
+    none = ROLLER.replace(T_epsilon=[])
+    for found in (none.contact(1.0, delta=0.0).M, none.validity(1.0).small_contact.value):
+        assert found.shape == (0,)

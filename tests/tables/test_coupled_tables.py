@@ -149,6 +149,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     assert close(most, known, tol.GRID_MOTION)
     assert "beta" not in grid.contact(0.1, delta=0.0).as_dict()
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
+    refused(lambda: grid.validity(0.1), "the roller of its materials (not of a grid) with coupled")
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
@@ -214,7 +215,11 @@ def test_one_cover_takes_its_table_unless_asked_otherwise(scene):
     own = scene.replace(material=BELT)
     states = {"V": 0.1, "delta": np.linspace(-0.2, 0.2, 9)}
     assert np.array_equal(own.contact(**states).Q, scene.contact(**states).Q)
-    assert abs(own.contact(**states).Q - own.uncoupled.contact(**states).Q).max() > 1e-3
+    fast, loaded = (one.replace(coupled=False) for one in (own, scene))
+    assert abs(own.contact(**states).Q - fast.contact(**states).Q).max() > 1e-3
+    assert np.array_equal(loaded.contact(**states).Q, fast.contact(**states).Q)
+    slow = scene.replace(material=fast.rolling_law, coupled=True)
+    assert np.array_equal(slow.contact(**states).Q, own.contact(**states).Q)
     assert str(own.validity(0.1)) == str(scene.validity(0.1))
 
 

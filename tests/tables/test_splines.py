@@ -10,6 +10,7 @@ import numba
 import numpy as np
 import pytest
 import tolerances as tol
+import xarray as xr
 from closeness import close
 from refusals import refused
 
@@ -131,10 +132,13 @@ def test_a_grid_of_another_program(tmp_path):
     other.to_netcdf(tmp_path / "other.nc", engine="scipy", format="NETCDF3_64BIT")
     speeds = np.array([1e-3, -3e-3, 1e-4, 2e-3])
     omega = speeds * np.array([1.001, 1.005, 0.99, 1.5]) / ROLLER.R
-    found, truth = (
-        law(speeds, omega, slopes=True)
-        for law in (vr.law(vr.load_law(tmp_path / "other.nc")), ROLLER.law())
-    )
+    law = vr.law(vr.load_law(tmp_path / "other.nc"))
+    found, truth = (each(speeds, omega, slopes=True) for each in (law, ROLLER.law()))
+    labelled = law(*(xr.DataArray(each, dims="run") for each in (speeds, omega)))
+    assert labelled.Q.identical(xr.DataArray(found.Q, dims="run", name="Q"))
+    pint = pytest.importorskip("pint").UnitRegistry()
+    with_unit = law(pint.Quantity(3.6 * speeds, "km/h"), pint.Quantity(omega, "rad/s"))
+    assert close(with_unit.M, found.M, tol.SCENE)
     moment = ROLLER.load * ROLLER.R
     assert close(found.Q, truth.Q, tol.COARSE_GRID, scale=ROLLER.load)
     assert close(found.M, truth.M, tol.COARSE_GRID, scale=moment)

@@ -500,19 +500,23 @@ class _LawOfGrid(Law):
         """Return the law at arrays, one state after another, because the compiled law takes one
         state.
 
-        V, omega: speeds in the units of the grid, of any shapes that broadcast.
+        V, omega: speeds in the units of the grid, of any shapes that broadcast; they may have
+        labels or units.
         kind: class of the result, :class:`Loads`, without slopes, or :class:`LoadsAndSlopes`.
-        Returns a ``kind`` of arrays of the broadcast shape, of numbers for numbers; empty ones for
-        empty input.
+        Returns a ``kind`` of arrays of the broadcast shape, with the labels of the speeds, of
+        numbers for numbers; empty ones for empty input.
         Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or
         infinite input, and for shapes that do not broadcast.
         """
         evaluate = np.vectorize(
             lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 10
         )
-        V, omega = check_array("V", V), check_array("omega", omega)
-        broadcast_shape(V=V, omega=omega)
-        return kind(*(each[()] for each in evaluate(V, omega)[: len(kind._fields)]))
+        plain, labels = strip_labels({"V": V, "omega": omega}, self.roller.scale)
+        speeds = {name: check_array(name, each) for name, each in plain.items()}
+        broadcast_shape(**speeds)
+        rows = (each[()] for each in evaluate(*speeds.values()))
+        found = dict(zip(kind._fields, rows, strict=False))
+        return kind(**Values(found, labels=labels).as_dict())
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
         """Raise OutOfTableError for a state that the splines found to be outside; V, omega: in

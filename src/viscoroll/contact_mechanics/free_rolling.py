@@ -304,7 +304,7 @@ class FreeRolling:
         Raises ParameterError for a cover, whose N is not known.
         """
         scene = scene.uncoupled  # a free roller has hardly any traction
-        why = "free rolling is not computed, as it depends on the added mass N, which is not known"
+        why = "leave this call out, as free rolling depends on the added mass N, which is not known"
         refuse_cover(scene, why)
         materials: Any
         unit: Any
@@ -316,9 +316,9 @@ class FreeRolling:
                 else ([material], np.zeros((), int))
             )
         else:
-            pairs = (series_in_own_time(total_series(one)) for one in scene.material_array)
-            materials, unit = zip(*pairs, strict=True)
-            unit = np.array(unit, float)
+            pairs = [series_in_own_time(total_series(one)) for one in scene.material_array]
+            materials = [each for each, _ in pairs]
+            unit = np.array([each for _, each in pairs])
             index = np.arange(unit.size)
         gamma = np.nan if scene.gamma is None else scene.gamma
         with np.errstate(over="ignore"):

@@ -176,7 +176,8 @@ class Parameters(Roller):
 
         A gamma of None stays None.  With a material ``alpha`` becomes that of the material, a float
         or an array (n,).  A :class:`LawTable` is replaced by its material (or by its alpha, with
-        None for the material), and kept as ``_law`` for :attr:`table`.
+        None for the material), and kept as ``_law`` for :attr:`table` unless ``coupled`` asks for
+        the other kind of law of its bodies.
         Raises ParameterError: both or neither of alpha and material, a material of another type,
         kappa, mu or j that is None, values out of range, NaN or infinite, shapes that do not
         broadcast, mu/kappa outside :data:`RATIO_RANGE`.
@@ -192,12 +193,13 @@ class Parameters(Roller):
         if isinstance(material, LawGrid):
             material = material.table(check_number("kappa", values["kappa"], above=0.0))
         if isinstance(material, LawTable):
-            vars(self)["_law"] = material
-            refuse_other_friction(material, values["mu"])
+            if material.gridded or self.coupled in (None, material.coupled is not None):
+                vars(self)["_law"] = material
+                refuse_other_friction(material, values["mu"])
             material = material.material
         if isinstance(material, Prony | Bodies):
             values["alpha"] = material.alpha
-        elif self._law is not None:
+        elif self._given_law is not None:
             values["alpha"] = material
             material = None
         elif material is not None:
@@ -401,8 +403,7 @@ class Parameters(Roller):
         """
         if not self.tabulated or self.gridded:
             return self
-        name = "alpha" if self.material is None else "material"
-        return self.replace(coupled=False, **{name: getattr(self, name)})
+        return self.replace(coupled=False)
 
     @property
     def like_bodies(self) -> bool:
@@ -541,8 +542,9 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            f"the law is a table over speed and creepage: {why}, or make the Cylinder of the "
-            "bodies with coupled=False, which neglects that shear acts on the pressure",
+            f"the law is a table over speed and creepage: {why}; or make the roller of its "
+            "materials (not of a grid) with coupled=False, which neglects that shear acts on the "
+            "pressure",
         )
 
 

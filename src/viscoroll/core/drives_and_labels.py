@@ -405,8 +405,8 @@ class Labels(NamedTuple):
         if name not in self.coords:
             return name in self.dims and not values.ndim
         dims, label = self.coords[name]
-        # by numpy's rule of broadcasting the axes of the values are the last ones
-        own = xr.DataArray(values, dims=self.dims[len(self.dims) - values.ndim :])
+        # a number stands for all, and axes of further arguments have the size 1
+        own = xr.DataArray(np.resize(values, self.shape), dims=self.dims)
         return not xr.DataArray(label, dims=dims).broadcast_equals(own)
 
     def axes_beside(

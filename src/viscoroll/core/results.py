@@ -276,6 +276,7 @@ class Values(Result):
         si: bool = False,
         labels: Labels | None = None,
         about: dict[str, Any] | None = None,
+        further: tuple[str, ...] = (),
     ) -> None:
         """Keep the fields of a result, with the arguments that tables and figures need as axes.
 
@@ -289,16 +290,18 @@ class Values(Result):
         labels: :class:`.drives_and_labels.Labels` of the caller's arrays, put onto the fields of
             their shape, also after axes of the roller; None: fields stay plain arrays.
         about: further attributes of the dataset by name; None: there are none.
+        further: names of the axes after those of the labels, each that of an argument along it.
         """
         self._about = about or {}
         self._values = (
             values
             if labels is None
-            else {name: labels.apply(name, each) for name, each in values.items()}
+            else {name: labels.apply(name, each, *further) for name, each in values.items()}
         )
         self._given = given or {}
         self._own = own or {}
         self._labels = labels
+        self._further = further
         self._title = title + ", in SI units" * si
         self._si = si
 
@@ -395,15 +398,18 @@ class Values(Result):
         given = {name: np.asarray(value) for name, value in self._given.items()}
         arrays = given | {name: np.asarray(value) for name, value in self._values.items()}
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
-        if self._labels and self._labels.axes_in_front(shape) >= 0:
+        own = shape[: len(shape) - len(self._further)]
+        coords: dict[str, Any] = {}
+        if self._labels and self._labels.axes_in_front(own) >= 0:
             # an argument that is itself the coordinate of its name needs no variable beside it
             alike = {name for name in given if not self._labels.differ(name, given[name])}
-            dims, coords = dataset_axes(self._labels, shape, arrays.keys() - alike)
+            names = (arrays.keys() - alike).union(self._further)
+            dims, coords = dataset_axes(self._labels, own, names)
+            dims += self._further
+            axes = {name: given[name] for name in self._further}
         else:
             dims, axes = _name_axes(given, shape)
-            coords = {
-                name: ((name,), values, self._attributes(name)) for name, values in axes.items()
-            }
+        coords |= {name: ((name,), values, self._attributes(name)) for name, values in axes.items()}
         data = {}
         for name, array in arrays.items():
             if name not in coords:

@@ -35,30 +35,32 @@ from ..core import (
     shape_error,
     strip_labels,
 )
-from .heated_bodies import NODES, check_ambient, heat_states
+from .heated_bodies import NODES, check_ambient, heat_states, heated_body, shift_curve
 from .temperature import HOTTEST, zeros_at_speed
 
 # --- Limits ---
 
-#: Film coefficient of a turning roller in still to moving air, W/(m2 K): near the geometric mean of
-#: 10 to 50, the range of forced convection and radiation at surface speeds of 0.5 to 10 m/s.
+#: Film coefficient of a turning roller, W/(m2 K): near the geometric mean of 10 to 50, the range of
+#: forced convection and radiation at surface speeds of 0.5 to 10 m/s.
 DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab
 #: with an insulated side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
 BIOT_LIMIT = 0.75
-#: Speed up to which turning points are returned, m/s: beyond it no roller runs, and the loss of a
-#: cold rubber no longer depends on the speed to rounding.
+#: Speed up to which turning points are returned, m/s: beyond it the loss of a cold rubber no longer
+#: depends on the speed to rounding.
 FASTEST = 1e4
 #: ln of V, m/s, and of the load over that given, between which limits are sought: beyond them no
 #: roller runs.
 _LN_RANGE = -70.0, 70.0
 #: Distance of ln V and of ln of a load from a limit at which it is found.
 _TOLERANCE = {"xatol": 1e-13, "xrtol": 1e-15}
-#: Part of the allowed rise by which a limit misses it, from which on it is a runaway: at the end of
-#: a branch the temperature has an error of the square root of that of ln V.
+#: Part of the allowed rise by which a runaway misses it: at the end of a branch the temperature has
+#: an error of the square root of that of ln V.
 _SHORT = 1e-5
-#: Distance of ln of a load of a cover from a limit at which it is found: each is a law of its own.
-_COVER_TOLERANCE = 1e-6
+#: Steps of ln of a load of a cover after which its limit is found, by the fast law and that of the
+#: roller: a hundredth of a step is left.  Slope of ln heat by which the secant method starts.
+_COVER_STEPS = 1e-2, 1e-4
+_RISE = 1.5
 
 
 class TurningPoints(NamedTuple):
@@ -87,8 +89,7 @@ def heat_limit(
     """Find the largest load at each speed, or the largest speed at each load, at which a roller
     stays cool enough.
 
-    It starts at ambient temperature, rolls freely, and must not pass the allowed temperature at any
-    time.
+    It starts at ambient temperature, rolls freely, and never passes the allowed temperature.
 
     Parameters
     ----------
@@ -103,15 +104,13 @@ def heat_limit(
     Values
         ``load`` (N/m) of given V, or ``V`` (m/s, > 0; infinite where no speed is too fast) of given
         loads; ``temperature``, from which a larger one leads beyond the allowed temperature: the
-        allowed one, or below it the one at which the cold branch ends; ``runaway``, whether that is
-        so.
+        allowed one, or that at which the cold branch ends; ``runaway``, whether it is the latter.
 
     Raises
     ------
     ParameterError
-        As in :func:`temperature`; both or neither of V and load, V = 0, an allowed
-        temperature that is not above ambient or beyond the range of the shift, a load of a cover
-        that is too thin for its law.
+        As in :func:`temperature`; both or neither of V and load, V = 0, an allowed temperature not
+        above ambient or beyond the range of the shift, a load at which a cover is too thin.
 
     Examples
     --------
@@ -131,10 +130,12 @@ def heat_limit(
     The limits are those of :func:`temperature` to 1e-8, relative (``tests/test_heat.py``).
     """
     _, scene, scale = resolve_model(roller, "heat_limit")
+    curve = shift_curve(heated_body(roller, "heat_limit", 0.5).material)
     name = check_one_given(V=V, load=load)
     given = {name: V if load is None else load, "ambient": ambient, "conductance": conductance}
     plain, labels = strip_labels(given, scale)
     allowed = check_number("allowed", allowed, unit=SI)
+    check_ambient(np.asarray(allowed), curve, "allowed")
     value = check_array(name, plain[name], above=0.0 if name == "load" else -math.inf)
     if name == "V" and not value.all():
         raise described_error("V", "is 0, where the roller stays cold", "other than 0")
@@ -172,7 +173,6 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
     if "load" in given:
         roller = roller.replace(load=given["load"])
     states = heat_states(roller, roller.scene(), "heat_limit", given)
-    check_ambient(np.asarray(allowed), states.curve, "allowed")
 
     def above(ln: Floats, n: Integers) -> Floats:
         """Return the coldest equilibrium less the allowed temperature, K, (m,).
@@ -191,7 +191,7 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
 
     every = np.arange(states.load.size)
     found = find_root(above, _LN_RANGE, args=(every,), tolerances=_TOLERANCE)
-    # the last point below the limit: at the end of a branch it misses the allowed temperature
+    # the last below the limit: at the end of a branch it misses the allowed temperature
     below = np.where(found.success, found.bracket[0], 0.0)
     short = -above(below, every)
     runaway = found.success & (short > _SHORT * (allowed - states.ambient))
@@ -209,28 +209,37 @@ def _limit_of_cover(
 ) -> tuple[Any, ...]:
     """Return :func:`_limits` of one state of a cover, of which every load has a law of its own.
 
-    With V given the load is sought at which the largest speed is V, by the secant method.
+    A load is below the limit if the body gets less heat than it gives off at some temperature up to
+    the allowed one.  The secant method has the fast law first, as a table takes seconds.
 
-    roller: the cylinder with the cover.
-    allowed: allowed temperature, degrees Celsius.
+    roller, allowed: as in :func:`_limits`.
     load, V: N/m and m/s, one of the two, a number; None: it is sought.
     given: ambient and conductance, numbers.
-    Raises ParameterError where a load on the way to the limit makes the cover too thin for its law.
+    Raises ParameterError for a load on the way at which the cover is too thin.
     """
-    from scipy.optimize import root_scalar
-
     if load is not None:
         return _limits(roller, allowed, given | {"load": load})
-
-    def faster(ln: float) -> float:
-        limit = _limits(roller, allowed, given | {"load": math.exp(ln)})
-        return math.log(limit[0] / abs(V))
-
-    # a first step as if the largest speed changed as 1/load
-    start = math.log(roller.load)
-    found = root_scalar(faster, x0=start, x1=start + faster(start), xtol=_COVER_TOLERANCE)
-    load = math.exp(found.root)
-    return load, *_limits(roller, allowed, given | {"load": load})[1:]
+    ln, slope, value = math.log(roller.load), _RISE, 0.0
+    for coupled, last in zip((False, roller.coupled), _COVER_STEPS, strict=True):
+        step = math.inf
+        while abs(step) > last:
+            at = roller.replace(load=math.exp(ln), coupled=coupled)
+            states = heat_states(at, at.scene(), "heat_limit", given | {"V": V})
+            # without ambient, where no heat is given off
+            theta = states.curve.nodes(given["ambient"], allowed)[1:]
+            for _ in range(4):
+                heat = states.heat(np.zeros(theta.size, np.int64), theta, V)
+                ratio = heat / (given["conductance"] * (theta - given["ambient"]))
+                k = int(ratio.argmin())
+                worst = float(theta[k])
+                low, high = theta[max(k - 1, 0) : k + 2][[0, -1]]
+                theta = np.linspace(low, high, 65)
+            before, value = value, math.log(ratio[k])
+            slope = slope if step == math.inf else (value - before) / step
+            # by a factor e at most
+            step = min(max(-value / slope, -1.0), 1.0)
+            ln += step
+    return math.exp(ln), worst, worst < allowed
 
 
 def turning_points(roller: Roller, *, ambient: float, conductance: float) -> TurningPoints:
@@ -361,12 +370,7 @@ def conductance(
     12.566
     """
     check_choice("core", core, "cooled", "insulated")
-    given: dict[str, Any] = {
-        "R": R,
-        "film": film,
-        "thickness": thickness,
-        "conductivity": conductivity,
-    }
+    given: Any = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
     arrays = {
         name: check_array(name, x, unit=SI, above=0.0) for name, x in given.items() if x is not None
     }
@@ -429,10 +433,8 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
     >>> vr.uniform_temperature(film=10.0, thickness=0.01, conductivity=0.25).holds
     True
     """
-    given = {"film": film, "thickness": thickness, "conductivity": conductivity}
-    film, thickness, conductivity = (
-        check_number(name, x, unit=SI, above=0.0) for name, x in given.items()
-    )
+    given = {"film": film, "thickness": thickness, "conductivity": conductivity}.items()
+    film, thickness, conductivity = (check_number(name, x, unit=SI, above=0.0) for name, x in given)
     biot = film * thickness / conductivity
     # a slab with even sources, cooled on one side: the rise of the hottest point and the mean,
     # both divided by that of the surface
@@ -574,8 +576,8 @@ def warming(
         if np.ndim(plain[name])
     }
     shape = *states.shape, times.size
-    found_values = {name: each.reshape(shape) for name, each in values.items()}
-    return Values(found_values, about, si=True, title="Warming of a roller", labels=labels)
+    rows = {name: each.reshape(shape) for name, each in values.items()}
+    return Values(rows, about, si=True, title="Warming of a roller", labels=labels, further=("t",))
 
 
 def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:

@@ -307,14 +307,14 @@ class HeatStates:
         theta: temperatures, degrees Celsius, (m,).
         V: speeds, m/s, any sign, a number or (m,).
         more: factor of the load of the state, a number or (m,); other than 1 only for half-spaces
-            that roll freely.
+            without force and torque.
         Where friction cannot carry the load, the heat is that without slip.
         """
         factors = self.curve.at(theta)
         if self.loads is None:
             rolling = np.abs(self._free(n, factors, V=V, more=more, names=("M",))[0])
             return self.body.part * self.load[n] * more * np.abs(V) * rolling
-        rolling, slip = self._driven(n, factors, V)[1]
+        rolling, slip = self._driven(n, factors, V, more)[1]
         return self.body.part * rolling + self.body.slip * slip
 
     def fields(self, n: Integers, theta: Floats, V: Floats) -> dict[str, Floats]:
@@ -373,12 +373,12 @@ class HeatStates:
         return evaluate_law(law, state, shape=n.shape, creep_is_omega=False, names=names)
 
     def _driven(
-        self, n: Integers, factors: tuple[Floats, Any], V: Any
+        self, n: Integers, factors: tuple[Floats, Any], V: Any, more: Any = 1.0
     ) -> tuple[Floats, tuple[Floats, Floats]]:
         """Return the state under the loads at temperatures, and its losses.
 
         factors: a_T and sqrt(b_T) at these temperatures, (m,) each, or a number.
-        n, V: as in :meth:`heat`; at V = 0, where the losses are 0, the state is that of a
+        n, V, more: as in :meth:`heat`; at V = 0, where the losses are 0, the state is that of a
             dimensionless speed of 1.
         Returns (M_half_space, M_cylinder and delta, dimensionless, (3, m), NaN where the friction
         does not suffice; (loss in rolling, loss in slip), W/m, (m,) each).
@@ -390,7 +390,7 @@ class HeatStates:
         sign = np.where(V < 0.0, -1.0, 1.0) + np.zeros(n.size)
         loads: Any = self.loads
         vectors = {name: getattr(loads, name)[n] for name in ("force", "torque", "mu", "j")}
-        loads = loads._replace(kappa=loads.kappa[n] * root_b, **vectors)
+        loads = loads._replace(kappa=loads.kappa[n] * root_b / np.sqrt(more), **vectors)
         every = np.arange(n.size)
         rows = states_at(
             self.law, loads, load=every, sign=sign, V=np.where(speed == 0.0, 1.0, speed)
@@ -400,7 +400,7 @@ class HeatStates:
         # as Steady.loss: what shear changes in the moments is taken from friction
         rolling = rows[Field.FREE_HALF_SPACE] + (1.0 + delta) * rows[Field.FREE_CYLINDER]
         slip = delta * rows[Field.Q] + moments[0] + (1.0 + delta) * moments[1] - rolling
-        power = V * self.load[n]
+        power = V * self.load[n] * more
         return moments, (np.abs(rolling * power), np.abs(slip * power))
 
 
@@ -488,7 +488,7 @@ def heat_states(
         arrays without labels; None: not given.
     slip_share: as in :func:`heated_body`.
     driven: force, torque and slope beside V, by name; None: the cylinder rolls freely, which of a
-        cover is the torque 0.
+        table of the coupled solution and of a cover is the torque 0.
     Returns the :class:`HeatStates`, n states as the shape of all arguments and of the roller has.
     Raises ParameterError for values out of range, shapes that do not broadcast, several laws of
     covers or under a load, an ambient outside the range of the shift, two bodies with a temperature
@@ -506,13 +506,15 @@ def heat_states(
     for name in ("ambient", "start"):
         if name in arrays:
             check_ambient(arrays[name], curve, name)
-    covered = scene.cover is not None
-    if covered or driven is not None:
-        refuse_arrays(roller, scene, ("alpha",))
     vertical = body.material.vertical_shift is not None
     pair = roller.body_data.pair
     # the law keeps its shape beside a rigid body, of share 0 or 1 of the other, and of like bodies
     remade = vertical and not pair.like and pair.share not in (0.0, 1.0)
+    covered = scene.cover is not None
+    if driven is None and (covered or (scene.tabulated and not remade)):
+        driven = {"force": None, "torque": 0.0, "slope": None}
+    if driven is not None:
+        refuse_arrays(roller, scene, ("alpha",))
     if vertical and (covered or (remade and driven is not None)):
         allowed = (
             "left out for a cover and, where a force, torque or slope is given, beside an elastic "
@@ -533,8 +535,7 @@ def heat_states(
     flat = dict(zip(arrays, broadcast_rows(arrays.values(), shape), strict=True))
     names = ("R", "load", "kappa", "mu", "material", "ambient", "conductance")
     loads = None
-    if driven is not None or covered:
-        driven = driven or {"force": None, "torque": 0.0, "slope": None}
+    if driven is not None:
         force, torque = (
             make_dimensionless(name, driven[name], roller.scale) for name in ("force", "torque")
         )

@@ -306,10 +306,10 @@ def temperature(
     ----------
     roller : a :class:`Cylinder` whose material has a ``shift``.  One body relaxes, or both are of
         one material and thickness: each has half of the loss, and both have one temperature.
-    V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, of half-spaces without
-        loss in slip; with one of force and torque (or a slope, which counts as the force) the loss
-        in slip heats too.  None: the speed follows from the load at each temperature, as in
-        :func:`steady`.
+    V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, without loss in slip
+        where shear does not act on the pressure; with one of force and torque (or a slope, which
+        counts as the force) the loss in slip heats too.  None: the speed follows from the load at
+        each temperature, as in :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
     conductance : heat that the body gives off per kelvin, W/(m K), > 0
         (:func:`viscoroll.conductance`).

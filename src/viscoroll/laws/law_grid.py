@@ -19,12 +19,15 @@ from typing import Any
 import numpy as np
 
 from ..core import (
+    DIMENSIONLESS,
+    SI,
     DataArray,
     Dataset,
     FileError,
     Floats,
     OutOfTableError,
     ParameterError,
+    Scale,
     check_array,
     check_number,
     conversion_factor,
@@ -74,6 +77,7 @@ class LawGrid:
     load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
     title : title of the file; "of another program" without one.
     kappa : R/l0 for which a dimensionless grid was computed; None where it states none.
+    scale : :class:`.Scale` of its speeds, whose units are those of SI, or 1.
     """
 
     rows: CoupledRows
@@ -81,6 +85,7 @@ class LawGrid:
     load: float
     title: str
     kappa: float | None
+    scale: Scale
 
     def __repr__(self) -> str:
         return f"LawGrid({self.title}; for vr.law alone, or as the material of a Scene)"
@@ -405,7 +410,8 @@ def _in_si(table: Dataset) -> Dataset:
     table: dataset of a grid; V, delta, Q, M, M_half_space and M_cylinder, where present, must have
         an attribute ``units``; "1" is no unit.
     Returns a dataset with doubles in the units of :data:`UNITS`; if the unit of V is "1" all must
-    be dimensionless, and the attributes R and load are 1.
+    be dimensionless, and the attributes R and load are 1.  Its attribute ``scale`` is the
+    :class:`.Scale` of its units.
     Raises ParameterError for a unit that is missing or of another dimension, and in SI units for a
     missing attribute R or, beside mu, load.
     """
@@ -424,14 +430,14 @@ def _in_si(table: Dataset) -> Dataset:
             raise ParameterError(f"attribute units of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(float) * by})
     if given["V"] == "1":
-        return table.assign_attrs(R=1.0, load=1.0)
+        return table.assign_attrs(R=1.0, load=1.0, scale=DIMENSIONLESS)
     # the load is needed only to make a limit of mu
     for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
         if name not in table.attrs:
             raise described_error(
                 f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit"
             )
-    return table
+    return table.assign_attrs(scale=SI)
 
 
 def _law_of(table: Dataset) -> LawGrid:
@@ -484,6 +490,7 @@ def _law_of(table: Dataset) -> LawGrid:
         kappa=check_number("kappa", table.attrs["kappa"], above=0.0)
         if "kappa" in table.attrs
         else None,
+        scale=table.attrs["scale"],
     )
 
 

@@ -404,6 +404,8 @@ def as_json(fit: Any) -> dict[str, Any]:
 
 #: range of the median of the Kramers-Kronig ratio of data in which storage and loss go together
 _CONSISTENT = (0.8, 1.25)
+#: such a median above which the storage modulus does not rise but by rounding
+_FLAT = 1e9
 #: Poisson's ratio of the factor that the report gives of shear: the default of material()
 _NU = 0.49
 
@@ -542,7 +544,7 @@ def _kramers_kronig(median: float, symbol: str) -> str:
     """Return a sentence on whether storage and loss modulus can be of one material.
 
     median : median of the Kramers-Kronig ratio, measured over computed loss modulus, dimensionless;
-        NaN where it could not be computed.
+        NaN where it could not be computed, infinite where the storage modulus does not rise.
     symbol : "E" or "G".
     Returns a text without a subject, which follows the symbol of the loss modulus.  It warns of a
     median outside of 0.8 to 1.25, and of NaN says that there are too few frequencies.
@@ -550,6 +552,8 @@ def _kramers_kronig(median: float, symbol: str) -> str:
     if np.isnan(median):
         return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
     text = f"is {median:.2f} times the value from the slope of {symbol}' (Kramers-Kronig, median)"
+    if median > _FLAT:
+        text = f"is above 0, but {symbol}' does not rise with the frequency (Kramers-Kronig)"
     return (
         text
         + ": storage and loss modulus are inconsistent, or relaxation times are far apart"

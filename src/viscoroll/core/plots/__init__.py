@@ -256,6 +256,8 @@ def save(figure: Figure, path: FilePath) -> None:
 
 #: Fields that a figure shows if the dataset has them, in this order.
 _FIELDS = (
+    "load",
+    "temperature",
     "Q",
     "M",
     "C_rr",
@@ -497,10 +499,11 @@ def _add_corners(data: Dataset, name: str) -> tuple[NDArray, NDArray]:
 
 def _shown_fields(data: Dataset) -> list[str]:
     """Return the fields of ``data`` that vary, else all of them; of like bodies without the parts
-    of M.
+    of M, of limits by heat with the speed.
     """
     like = set(_PARTS) <= set(data) and data["M_cylinder"].equals(data["M_half_space"])
     fields = [name for name in _FIELDS if not (like and name in _PARTS)]
+    fields += ["V"] * ("runaway" in data)
     names = [name for name in fields if name in data.data_vars and data[name].ndim]
     return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
@@ -561,6 +564,7 @@ def draw(data: Dataset) -> Figure:
             return figure(data)
     found = ", ".join(f"{size} of {name}" for name, size in data.sizes.items()) or "a single state"
     sentence = (
-        f"a plot needs several speeds or creepages, but this result has {found}: compute it at more"
+        "a plot needs several speeds or creepages and a field such as Q or M, but this result has "
+        f"{found}"
     )
     raise ParameterError("plot", found, "a result over an axis", sentence)
