@@ -37,7 +37,7 @@ def close(found, exact, rel, *, scale=0.0, what=""):
         return True
     off, allowed, found, exact = np.broadcast_arrays(off, allowed, found, exact)
     with np.errstate(invalid="ignore", divide="ignore"):
-        badness = np.where(good, -1.0, np.nan_to_num(off / allowed, nan=np.inf, posinf=np.inf))
+        badness = np.where(good, -1.0, off / allowed)  # of several NaN the first
     worst = np.unravel_index(np.argmax(badness), off.shape)
     raise AssertionError(
         f"{what} {found[worst]!r} at {tuple(int(i) for i in worst)}, not {exact[worst]!r}: off by "

@@ -104,10 +104,6 @@ CALLS = {
             **given,
         ),
     ),
-    "validity": (
-        lambda: {"V": states()["V"][::30]},
-        lambda V: {"small_contact": SCENE.validity(V).small_contact.value},
-    ),
 }
 
 

@@ -91,12 +91,7 @@ OWN = {
         "loss": CURVE[1],
         "temperature": np.full(12, 30.0),
     },
-    "Coastdown": {
-        "t": [0.0, 0.25],
-        "V": [0.5, 0.4],
-        "x": [0.0, 0.1],
-        "omega": [0.5, 0.4],
-    },
+    "Coastdown": {"t": [0.0, 0.25], "V": [0.5, 0.4], "x": [0.0, 0.1], "omega": [0.5, 0.4]},
     "Motion.at": {"t": 0.125},
     "Motion.validity": {"capacity": 9e3},
 }
@@ -390,18 +385,15 @@ def test_schedules_carry_units(name, unit):
     values = np.array([0.5, 0.25])
     exact = rolled([0.0, 0.5], values)
     milli = Quantity(values, unit).to(f"milli{unit}")
-    for times in (
-        Quantity(np.array([0.0, 500.0]), "ms"),
-        pd.to_timedelta([0.0, 0.5], "s"),
-        [0.0, 0.5],
-    ):
+    durations = pd.to_timedelta([0.0, 0.5], "s")
+    for times in (Quantity(np.array([0.0, 500.0]), "ms"), durations, [0.0, 0.5]):
         found = rolled(times, milli)
         assert close([found.V, found.omega], [exact.V, exact.omega], tolerances.UNIT_CONVERTED)
     long = partial(rolled, Quantity(np.array([0.0, 0.5]), "m"), values)
     refused(long, f"times of {name} is in meter", "in s")
     heavy = partial(rolled, [0.0, 0.5], Quantity(values, "kg"))
     refused(heavy, f"values of {name} is in kilogram")
-    schedule = {name: vr.Schedule(pd.to_timedelta([0.0, 0.5], "s"), values)}
+    schedule = {name: vr.Schedule(durations, values)}
     refused(partial(of_scene, **schedule), f"times of {name} is in s: must be a number without")
 
 
@@ -435,12 +427,7 @@ def test_columns_of_results_go_back():
     data = CYLINDER.roll(0.5, 0.5, [0.1, 0.2]).to_pandas().reset_index()
     V = data["V [m s-1]"]
     exact = CYLINDER.contact(V.to_numpy(), delta=0.0).M
-    for column in (
-        V,
-        pd.Index(V),
-        (3.6 * V).rename("V [km/h]"),
-        V.rename("run [1]"),
-    ):
+    for column in (V, pd.Index(V), (3.6 * V).rename("V [km/h]"), V.rename("run [1]")):
         assert close(CYLINDER.contact(column, delta=0.0).M, exact, tolerances.UNIT_CONVERTED)
     assert np.array_equal(CYLINDER.roll(0.5, 0.5, data["t [s]"]).V, V)
     refused(lambda: SCENE.contact(V, delta=0.0), "V is in m s-1", "without dimension")

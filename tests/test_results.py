@@ -99,19 +99,16 @@ def test_a_torque_that_jumps_is_drawn_with_both_sides():
 @pytest.mark.parametrize(
     ("call", "most"),
     [
-        (partial(SCENE.contact, 0.01, delta=1e-3), 60),
         (partial(ROLLER.contact, 0.01, delta=1e-3), 75),
-        (partial(SCENE.roll, 1.5, 0.5, [1e-3]), 115),
         (partial(ROLLER.roll, 0.05, 0.5, [1e-3]), 130),
-        (partial(SCENE.steady, force=0.01), 220),
         # it warns of the wave speed at two of its four states
         (partial(ROLLER.steady, force=2.0), 260),
         (partial(ROLLER.steady, V=0.05, torque=0.0), 260),
     ],
 )
 def test_the_way_of_one_state_is_short(call, most):
-    """Calls of Python and of C for one state, as a profiler counts them: people loop over
-    states.
+    """Calls of Python and of C for one state, those of its scene among them, as a profiler counts
+    them: people loop over states.
     """
     call()  # what is made once
     events = []

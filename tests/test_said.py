@@ -67,10 +67,6 @@ SAID = {
     "no: | ; the density of the cylinder is not known": lambda: (
         pair(replace(SOFT, density=None), HEAVY).validity(1e4).quasistatic
     ),
-    "steady         no | small_contact  yes | plane          ?": lambda: (
-        vr.presets.PAPER_SECTION_5.validity([0.0, 1.5])
-    ),
-    "no:": lambda: ROLLER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity().creep,
     # of DMA_ROLLER at V = 30
     "14.03 m | 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s, which is reached after a "
     "time of 25.5 s | 0.002 m/s of speed and 0.062 m of distance": lambda: (

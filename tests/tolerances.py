@@ -102,11 +102,8 @@ AXIS_LAW = 1e-14
 AXIS_UNSTEADY = 2e-14
 
 # --- an alpha or a material each (test_contact.py) ---
-# An alpha each, by the axis of alpha: Q and its slope by delta over the condition of beta.  As
-# asked of the axis; 400 states from 1 to 2^20 have 2.5e-15 at most.
-EACH_ALPHA = 1e-14
-#: dQ_dV of an alpha each over mu/V: terms of the axis that are left out; measured 1.6e-14.
-EACH_SLOPE_OVER_V = 2e-14
+# Q of small creep whose mean slope is put together from two rows.
+BETWEEN_ROWS = 1e-14
 #: A material each, by the grid of z, against its own table: values, as asked, which 300 random
 #: series of 1 to 16 modes hold with 6e-14; slopes, of their scale, which are those of polynomials
 #: fitted to values.
@@ -326,8 +323,7 @@ STEADINESS_BOUND = 1.35 / 16.0
 # --- kernels/law/modes.py (test_unsteady.py) ---
 #: One mode as a series and as an alpha; -S_E.
 UNSTEADY_SERIES = 1e-12
-#: The first terms of its limits: kappa V T = 1e-4, and 1e4 times the speed of the fastest mode.
-UNSTEADY_SLOW = 1e-2
+#: The first term of its limit: 1e4 times the speed of the fastest mode.
 UNSTEADY_FAST = 1e-3
 #: Another unit of time: the times round, and N has a zero.
 UNSTEADY_UNIT = 1e-9

@@ -12,19 +12,13 @@ from calls import STEEL, pair
 from closeness import close
 from places import ROOT
 from refusals import refused
-from scipy.optimize import brentq
 
 import viscoroll as vr
+from pipeline.evidence.measure.covers import MATERIALS
 from viscoroll.contact_mechanics.coupled_pair import CoupledBody, CoupledPair, CoupledRow
 from viscoroll.contact_mechanics.stress import layer_transforms, transforms
 
-SERIES = {
-    "elastic": vr.Prony.elastic(),
-    "one": vr.Prony([10.0], [1.0 / 11.0]),
-    "three": vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003]),
-}
-ONE = SERIES["one"]
-THREE = SERIES["three"]
+ELASTIC, ONE, THREE = MATERIALS.values()
 KAPPA = 4.0
 MU = 0.3
 BELT = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
@@ -48,7 +42,7 @@ def test_boundary_elements_of_another_program():
     rows = pd.read_csv(ROOT / "data/reference/coupled.csv")
     for case, mine in rows.groupby(["material", "nu", "thickness", "u", "mu"]):
         name, nu, thickness, u, mu = case
-        cover = vr.Cover(SERIES[name], nu=nu, thickness=thickness, on="base")
+        cover = vr.Cover(MATERIALS[name], nu=nu, thickness=thickness, on="base")
         found = coupled(scene_of(cover, mu, 1.0), u, delta=0.5 * mine.creep.to_numpy())
         assert close(found.Q, mine.Q, tol.COUPLED_Q, scale=mu)
         assert close(found.M, mine.kappa_M, tol.COUPLED_MOMENT, scale=1.0)
@@ -56,23 +50,7 @@ def test_boundary_elements_of_another_program():
         assert close(found.epsilon, mine.epsilon, tol.COUPLED_LENGTH, scale=1.0)
 
 
-def test_dundurs_constant_as_contact_publishes_it():
-    rows = pd.read_csv(ROOT / "data/reference/bentall.csv")
-    one = (1.0 - 0.31) / 23000.0
-    other = (1.0 - 0.28) / 82000.0
-    elastic = SERIES["elastic"]
-    bodies = vr.Bodies(elastic, elastic, share=other / (one + other), poisson=(0.28, 0.31))
-    pair = CoupledPair.of_scene(scene_of(bodies))
-    for row in rows[rows.mu < math.inf].itertuples():
-        states = CoupledRow(pair, 1.0, row.mu)
-        creep = brentq(
-            lambda x, on=states, Q=row.Q_over_mu_P: on.states([x]).Q_over_mu[0] - Q,
-            *states.onsets(),
-        )
-        assert close(abs(creep) * 0.1 / 25.0, row.creep, tol.BENTALL)
-
-
-@pytest.mark.parametrize("material", [SERIES["elastic"], ONE, THREE, vr.Bodies(ONE, THREE, 0.3)])
+@pytest.mark.parametrize("material", [ELASTIC, ONE, THREE, vr.Bodies(ONE, THREE, 0.3)])
 def test_half_spaces_have_the_law_of_the_table(material):
     scene = scene_of(material)
     V = 0.1
@@ -102,16 +80,8 @@ def test_sides_and_directions():
 
 
 def test_two_like_covers_do_not_couple():
-    nip = vr.Cover(
-        ONE,
-        nu=0.3,
-        thickness=0.5,
-        on="base",
-        part=0.5,
-        other=ONE,
-        other_nu=0.3,
-        other_thickness=0.5,
-    )
+    other = {"other": ONE, "other_nu": 0.3, "other_thickness": 0.5}
+    nip = vr.Cover(ONE, nu=0.3, thickness=0.5, on="base", part=0.5, **other)
     fields = "Q", "M_half_space", "M_cylinder", "delta_0"
     found = coupled(scene_of(nip), 0.1, delta=[0.0, 0.02], fields=fields)
     assert close(found.Q[0], 0.0, tol.COUPLED_HALF_SPACE, scale=MU)
@@ -220,7 +190,7 @@ def test_tractions_carry_load_and_creep_force():
 
 
 def test_depth_is_that_of_the_surface_in_the_middle():
-    cover = vr.Cover(vr.Prony.elastic(), nu=0.3, thickness=0.5, on="base")
+    cover = vr.Cover(ELASTIC, nu=0.3, thickness=0.5, on="base")
     row = CoupledRow(CoupledPair.of_scene(scene_of(cover)), 0.0, MU)
     profile = row.profile(0.05)
     k = np.linspace(1e-9, 600.0, 20001)

@@ -14,7 +14,7 @@ from long_cases import long
 import viscoroll as vr
 from pipeline.evidence.measure import covers
 
-ONE, THREE = (covers.MATERIALS[name] for name in ("one", "three"))
+_, ONE, THREE = covers.MATERIALS.values()
 
 
 some = pytest.mark.parametrize("index", [0, 5, *long(15, 20)])

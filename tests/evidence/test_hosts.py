@@ -20,10 +20,7 @@ from test_invariance import assert_same, everything
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 
 #: control and status register of SSE: denormals are zero in bit 6, flush to zero in 15
-MODES = {
-    "denormals are zero": 0x0040,
-    "flush to zero": 0x8000,
-}
+MODES = {"denormals are zero": 0x0040, "flush to zero": 0x8000}
 REGISTER = """
 #include <xmmintrin.h>
 unsigned get(void) { return _mm_getcsr(); }

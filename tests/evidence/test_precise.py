@@ -28,18 +28,8 @@ def test_driven_motions_hold_together():
     """
     assert len(DRIVEN_MOTIONS) == 30
     assert max(row["difference"] for row in DRIVEN_MOTIONS) < tol.PRECISE_MOTION
-    assert {regime for row in DRIVEN_MOTIONS for _, regime in row["switches"]} == {
-        "full slip",
-        "partial slip",
-        "locked",
-        "held",
-    }
+    regimes = {regime for row in DRIVEN_MOTIONS for _, regime in row["switches"]}
+    assert regimes == {"full slip", "partial slip", "locked", "held"}
     assert sum(bool(row["reversals"]) for row in DRIVEN_MOTIONS) >= 6
-    assert {name for row in DRIVEN_MOTIONS for name in row["drive"]} == {
-        "force",
-        "torque",
-        "slope",
-        "brake",
-        "V",
-        "omega",
-    }
+    drives = {name for row in DRIVEN_MOTIONS for name in row["drive"]}
+    assert drives == {"force", "torque", "slope", "brake", "V", "omega"}

@@ -106,7 +106,6 @@ def test_limits_of_a_material():
     solid = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
     exact = 2.3e5 * (1.0 + (10.7 / 0.97 - 1.0) * np.exp(TIMES / -0.97))
     assert close(solid.relaxation(TIMES), exact, tol.MATERIAL)
-    assert (solid.T_ref, solid.prony.T.item(), solid.prony.alpha) == (10.7, 1.0, 10.7 / 0.97)
     assert vr.Material.sls(2.3e5, 0.49, 1.0, 1.0).prony == vr.Prony.elastic()
 
 

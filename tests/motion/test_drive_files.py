@@ -103,6 +103,3 @@ def test_force_after_rest_is_what_is_given():
     assert np.array_equal(e.rest_time, [5.0, 2.0])
     assert close(e.force[0], np.interp(LATE, [0.0, 5.0], [0.004, 0.0]), 1e-15, scale=0.004)
     assert not e.V[1, LATE >= 2.0].any()
-    m = PAPER.roll(0.05, 0.05, LATE, force=vr.Schedule([0.0, 5.0], [0.004, 0.0]), rest=0.045)
-    assert m.rest_time == 5.0
-    assert np.array_equal(m.force, e.force[0])

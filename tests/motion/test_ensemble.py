@@ -94,8 +94,6 @@ def test_summary():
     summary = result.summary(quantiles=(0.25, 0.5))
     assert close(summary.V_mean, result.V.mean(axis=0), 1e-13)
     assert close(summary.V_quantiles.sel(quantile=0.5), np.median(result.V, axis=0), 1e-13)
-    onset = np.nanquantile(result.onset_time, (0.25, 0.5))
-    assert close(summary.onset_time_quantiles, onset, 1e-13)
     assert summary.attrs["motions"] == summary.ended.sum() == COUNT
     for counted in (summary.V_counted, summary.V_histogram.sum("V_bin")):
         assert (counted == COUNT).all()

@@ -155,18 +155,12 @@ def test_the_dimensionless_call_in_other_units(name):
 # --- many cylinders ---
 
 MANY = {
-    "mu and load": (
-        ROLLER,
-        {"mu": [0.2, 0.3, 0.4], "load": [300.0, 340.0, 380.0]},
-    ),
+    "mu and load": (ROLLER, {"mu": [0.2, 0.3, 0.4], "load": [300.0, 340.0, 380.0]}),
     "load and R": (
         vr.presets.RUBBER_CYLINDER,
         {"load": [50.0, 200.0, 900.0], "R": [0.05, 0.1, 0.2]},
     ),
-    "times": (
-        ROLLER,
-        {"T_epsilon": [1e-3, 1e-2, 2e-2], "T_sigma": [1e-3, 1e-3, 5e-3]},
-    ),
+    "times": (ROLLER, {"T_epsilon": [1e-3, 1e-2, 2e-2], "T_sigma": [1e-3, 1e-3, 5e-3]}),
 }
 
 
@@ -196,7 +190,7 @@ def test_each_of_many_is_as_alone(name):
         alone = one.validity(0.5).steady.value
         assert close(unsteady[n], alone, tol.STEADINESS, scale=1e-9)
         assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, tol.SI_MOTION)
-    again = roller.replace(**{key: values.copy() for key, values in each.items()})
+    again = roller.replace(**each)
     assert (many, hash(many)) == (again, hash(again))
 
 

@@ -143,11 +143,9 @@ def test_grids_of_other_programs_roll(tmp_path):
         lambda: grid.ensemble([1.0, 9.0], 9.0, 5.0, torque=5.0),
     ):
         refused(beyond, "within the table")
-    refused(lambda: grid.contact(0.1, delta=0.0, fields="lam"), "lam")
     refused(lambda: grid.contact(0.1, delta=0.0, method="coupled"), "material is a grid of Q and M")
     most, known = (vr.resistance_extrema(each).M for each in (grid, rows))
     assert close(most, known, tol.GRID_MOTION)
-    assert "beta" not in grid.contact(0.1, delta=0.0).as_dict()
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
     refused(lambda: grid.validity(0.1), "the roller of its materials (not of a grid) with coupled")
 

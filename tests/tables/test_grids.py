@@ -25,14 +25,8 @@ DELTA = np.linspace(-0.04, 0.04, 33)
 ALPHA = np.array([1.0, 2.0, 4.0, 8.0, 16.0])
 #: A thin rubber cover on a steel core, on concrete: delta_0 is an eighth of delta_star.
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [0.1, 1e-3]), thickness=0.012)
-COVERED = vr.Cylinder(
-    R=0.1,
-    m=60.0,
-    material=RUBBER,
-    base=vr.Material.elastic(3e10, 0.2),
-    mu=0.6,
-    coupled=False,
-)
+CONCRETE = vr.Material.elastic(3e10, 0.2)
+COVERED = vr.Cylinder(R=0.1, m=60.0, material=RUBBER, base=CONCRETE, mu=0.6, coupled=False)
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)
 WHAT = {
     "alphas": vr.presets.PAPER_SECTION_5,
@@ -267,8 +261,8 @@ def test_declared_invalid_values_are_refused_and_six_digits_are_read(tmp_path):
 def test_netcdf3_csv_and_matlab_hold_the_same_bits(table, tmp_path):
     tables.export(table, tmp_path / "t.cdf")
     with io.netcdf_file(tmp_path / "t.cdf", mmap=False) as file:
-        for key, variable in table.variables.items():
-            assert np.array_equal(file.variables[key][...], variable.values)
+        for key in table.variables:
+            assert np.array_equal(file.variables[key][...], table[key])
     tables.export(table, tmp_path / "t.csv")
     axes = table_files.axes_of(table)
     found = np.genfromtxt(tmp_path / "t.csv", delimiter=",", names=True)
@@ -277,9 +271,7 @@ def test_netcdf3_csv_and_matlab_hold_the_same_bits(table, tmp_path):
     assert all(np.array_equal(found[key], wide[key]) for key in found.dtype.names)
     tables.export(table, tmp_path / "t.mat")
     content = io.loadmat(tmp_path / "t.mat", simplify_cells=True)["viscoroll"]
-    assert all(
-        np.array_equal(content[key], variable.values) for key, variable in table.variables.items()
-    )
+    assert all(np.array_equal(content[key], table[key]) for key in table.variables)
     assert content["dimensions"]["Q"] == ", ".join(axes)
     assert content["linear_error"]["beta"] == table.beta.attrs["linear_error"]
 

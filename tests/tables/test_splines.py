@@ -147,7 +147,7 @@ def test_a_grid_of_another_program(tmp_path):
 
 
 def test_a_grid_has_no_onset_and_no_stick_zone(tmp_path):
-    """The ends of its axis of delta are none; shapes and kinds are those of any law."""
+    """The ends of its axis of delta are none; shapes are those of any law."""
     nodes = tables.spread(1e-3, 2.0, 9, "log")
     own = tables.build(SCENE, nodes, delta=tables.creep_nodes(SCENE, nodes, 21))
     tables.save(own, tmp_path / "own.nc")
@@ -159,4 +159,3 @@ def test_a_grid_has_no_onset_and_no_stick_zone(tmp_path):
     assert np.isnan(roller.steady(V=0.5, torque=0.0).beta).all()
     law = vr.law(read)
     refused(lambda: law([1.0, 1.1], [1.0, 1.1, 1.2]), "V (2,), omega (3,) do not fit together")
-    assert isinstance(law(np.int64(1), np.int64(1)).Q, float)

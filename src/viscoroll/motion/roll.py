@@ -547,7 +547,7 @@ def roll(
     Notes
     -----
     Under a drive, and with bodies that differ, the errors of V and omega are at most 30 ``rtol`` of
-    the largest speed so far, mostly below 3 (``tests/motion/test_drive.py``); near a saddle
+    the largest speed so far, mostly below 3 (``tests/test_claims.py``); near a saddle
     (``vr.steady``) multiplied by the ratio at which neighbouring motions diverge.
 
     Examples

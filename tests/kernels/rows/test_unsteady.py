@@ -80,16 +80,9 @@ def test_rows_against_its_definition(material):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_limits(seed):
-    """Slow: -S_E + 2 kappa V (w_3 - w_1 w_2), w_n = sum T^n - sum tau^n; fast: sum J/(4 kappa
-    V)^2.
-    """
+    """At rest -sum E tau^2; fast sum J/(4 kappa V)^2."""
     p = random_series(seed)
-    w = [(p.T**n).sum() - (p.tau**n).sum() for n in (1, 2, 3)]
-    S_E = (p.E * p.tau**2).sum()
-    slow = 1e-4 / p.T[0]
-    assert close(N(p, 0.0), -S_E, tol.UNSTEADY_SERIES)
-    rise = (N(p, slow) - N(p, 0.0)) / slow
-    assert close(rise, 2.0 * (w[2] - w[0] * w[1]), tol.UNSTEADY_SLOW)
+    assert close(N(p, 0.0), -(p.E * p.tau**2).sum(), tol.UNSTEADY_SERIES)
     for fast in (1e4 / p.tau[-1], 1e9 / p.tau[-1], 1e40):
         assert close(N(p, fast), p.J.sum() / (4.0 * fast) ** 2, tol.UNSTEADY_FAST)
 
