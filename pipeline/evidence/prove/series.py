@@ -218,7 +218,7 @@ PROOFS = [
         _states("relative", 5e-15, "delta_star", "Q", "M")
         # strengths of 1e4 beside 1: what a slow mode takes of M is then a difference
         | _states("divided by M", 1e-12, *OF_BODIES)
-        # for alpha from 20 to 35, 24 powers of one octave leave 1.4e-14 of epsilon and 6.5e-15 of
+        # for alpha above 15, 24 powers of one octave leave up to 2e-14 of epsilon and 1.1e-14 of
         # lam; of the slope of M, near the ends of that octave, 1e-13
         | _states("relative", LAM, "lam")
         | _states("relative", EPSILON, "epsilon")

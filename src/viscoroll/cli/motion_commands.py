@@ -435,7 +435,7 @@ def sensitivity(arguments: Namespace) -> None:
     """Compute Sobol indices of the uncertain inputs of a run file.
 
     The table has first-order (S1) and total (ST) indices of the summarised quantities, with the half-width of the
-    95 % confidence interval (S1_conf, ST_conf), sorted by ST.  `viscoroll plot` draws the .nc file as bars.
+    95 % confidence interval (S1_conf, ST_conf), sorted by ST.  `viscoroll plot` draws the .nc file as bars (last time).
 
     example:
       viscoroll sensitivity run.toml -n 4096 -o sensitivity.nc

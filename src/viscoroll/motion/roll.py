@@ -71,7 +71,7 @@ class Motion(RollResult):
     switches : changes of regime, a tuple of (t, regime), located to rounding; under a drive to a
         small part of ``rtol``.  Only the first 1000 changes and reversals, counted together, are
         kept.
-    reversals : times at which V changes its sign under a drive, (reversals,).
+    reversals : times at which V changes its sign, (reversals,).
     force, torque : divided by P and P R, or N/m and N m/m: the loads with the pull of a slope, or
         the loads that a prescribed speed required; without the brake.
     work_force, work_torque : work of either since t = 0, divided by m (R/T_ref)^2 or in J/m.
