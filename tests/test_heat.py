@@ -444,6 +444,15 @@ def test_strain_of_the_contact():
     on = roller.replace(material=ROLLER.base, base=rubber)
     assert close(belt.validity(0.0).strain.value, on.validity(0.0).strain.value, tol.THICK_STRAIN)
     assert ROLLER.validity(1.0).strain.holds is None
+    # of one rubber, of which one body is a layer and the other one was measured
+    layer = dataclasses.replace(rubber, thickness=0.03, measured=None)
+    above, below = (
+        roller.replace(material=one, base=other).validity(1.0)
+        for one, other in ((layer, rubber), (rubber, layer))
+    )
+    assert close(above.strain.value, below.strain.value, 1e-12)
+    assert above.strain.holds == below.strain.holds
+    assert above.measured.holds == below.measured.holds
 
 
 @pytest.mark.usefixtures("two_speeds")

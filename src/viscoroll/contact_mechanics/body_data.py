@@ -87,8 +87,8 @@ def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
     data: the bodies, a :class:`BodyData`.
     V, length: speed, m/s, and contact length, m, arrays of one shape.
     load: N/m, broadcasts with them.
-    Returns name of the body ("the material" where both are alike) -> strain, dimensionless, in the
-    broadcast shape.
+    Returns name of the body ("the material" where both are alike, as thick and measured alike) ->
+    strain, dimensionless, in the broadcast shape.
     """
     pair = data.pair
     slenderness = 0.25 * length / data.R
@@ -96,14 +96,17 @@ def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
         return {
             "the material": 0.5 * SHEAR * slenderness * _modulus_over_shear(data.nu, data.plane)
         }
-    bodies = {"the material": pair.cylinder}
-    if not pair.like:
-        bodies = {"the cylinder": pair.cylinder, "the base": pair.half_space}
+    bodies = {name: body for name, (body, _) in data.bodies.items()}
     rate = np.abs(V) / length
     G = {name: body.storage(rate) / (2.0 * (1.0 + body.nu)) for name, body in bodies.items()}
     # compliances 1/E* of both bodies: the peak pressure is E* a/(2 R) with the sum of both
-    whole = (2.0 if pair.like else 1.0) * sum(
-        1.0 / (G[name] * _modulus_over_shear(body.nu, data.plane)) for name, body in bodies.items()
+    whole = (
+        2.0
+        / len(bodies)
+        * sum(
+            1.0 / (G[name] * _modulus_over_shear(body.nu, data.plane))
+            for name, body in bodies.items()
+        )
     )
     found = {}
     for name, body in bodies.items():
@@ -231,24 +234,31 @@ class BodyData:
     def records(self) -> dict[str, Measured]:
         """Return what was measured of each different body whose share of the compliance counts.
 
-        Returns a dict from "the material" (of like bodies), or "the cylinder" and "the base", to
-        its :class:`Measured`; without bodies that have no record or a share of the compliance below
-        0.01, and empty without a pair.
+        Returns a dict from the names of :attr:`bodies` to its :class:`Measured`; without bodies
+        that have no record or a share of the compliance below 0.01.
         """
-        pair = self.pair
-        bodies = {}
-        if pair is not None and pair.like:
-            bodies = {"the material": (pair.half_space, 1.0)}
-        elif pair is not None:
-            bodies = {
-                "the cylinder": (pair.cylinder, pair.share),
-                "the base": (pair.half_space, 1.0 - pair.share),
-            }
         return {
             name: body.measured
-            for name, (body, share) in bodies.items()
+            for name, (body, share) in self.bodies.items()
             if share >= _LEAST_SHARE and body.measured is not None
         }
+
+    @cached_property
+    def bodies(self) -> dict[str, tuple[Any, Any]]:
+        """Return the different bodies, of which some may be rigid.
+
+        Returns a dict from "the material" (of bodies that are alike, as thick and measured alike),
+        or "the cylinder" and "the base", to (its :class:`Material`; its share of the compliance);
+        empty without a pair.
+        """
+        pair = self.pair
+        if pair is None:
+            return {}
+        one = pair.cylinder
+        other = pair.half_space
+        if pair.like and (one.thickness, one.measured) == (other.thickness, other.measured):
+            return {"the material": (one, 1.0)}
+        return {"the cylinder": (one, pair.share), "the base": (other, 1.0 - pair.share)}
 
     @cached_property
     def measured_rates(self) -> tuple[float, float] | None:
