@@ -412,7 +412,7 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
     Parameters
     ----------
     film : film coefficient, W/(m2 K), > 0.
-    thickness : of the cover, m, > 0, on a core that takes no heat; of a solid cylinder its radius.
+    thickness : of the cover, m, > 0, on a core that takes no heat; of a solid cylinder 1.5 radii.
     conductivity : of the rubber, W/(m K), > 0.
 
     Returns
