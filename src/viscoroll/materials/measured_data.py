@@ -225,8 +225,8 @@ class ShiftFactors:
         low = self.temperature[0]
         high = self.temperature[-1]
         if not low - NEAR <= found <= high + NEAR:
-            allowed = f"in [{low}, {high}] °C, where shift factors were found; for others use the "
-            allowed += "law that wlf() or arrhenius() of these factors returns"
+            allowed = f"in [{low - NEAR}, {high + NEAR}] °C, near to found factors; for others use "
+            allowed += "the law that wlf() or arrhenius() of these factors returns"
             raise ParameterError("temperature", temperature, allowed)
         if low == high:
             return self.a_T[0]
