@@ -244,6 +244,7 @@ class Values(Result):
     si : whether quantities with a dimension are in SI units.
     labels : labels of the arguments.
     about : further attributes of the dataset.
+    further : names of the axes after those of the labels.
 
     Attributes
     ----------

@@ -360,7 +360,7 @@ def several_tables_error(name: str, one: str) -> ParameterError:
     return described_error(
         name,
         "has several values, each of which needs a table of pressure and shear",
-        f"{one}; or neglect their interaction, by coupled=False of the Cylinder (in a file "
+        f"{one}; or neglect their interaction, by coupled=False of the roller (in a file "
         "coupled = false in [cylinder])",
     )
 
