@@ -493,9 +493,9 @@ def validate(arguments: Namespace) -> int:
 
     A grid must be that of a scene with alpha.  The law of a cover is compared with solutions of the contact at no
     more than 400 speeds, a table of the coupled solution at no more than 80 states.  The exit code is 1 if an error is
-    larger than twice that stated (eight times for a cover and for a table of the coupled solution), of what shear does in
-    a cover plus 1e-8, for a grid also if it is larger than half of the largest value, or if a node differs from the law by
-    more than 1e-12.
+    larger than twice that stated (eight times for a cover or a table of the coupled solution; of what shear does in a
+    cover 1e-8 more), for a grid also if it is larger than half of the largest value, or if a node differs from the law
+    by more than 1e-12.
 
     example:
       viscoroll samples
