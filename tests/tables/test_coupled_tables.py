@@ -132,7 +132,7 @@ def test_losses_in_slip_of_free_rolling_are_not_below_zero(scene):
 def test_grids_of_other_programs_roll(tmp_path):
     rows = scene_of(ONE)
     V = tables.spread(1e-4, 10.0, 200, "log")
-    made = tables.build(rows, V, delta=tables.creep_nodes(rows, V, 401))
+    made = tables.build(rows, V, delta=[-0.5, *tables.creep_nodes(rows, V, 401)])
     tables.save(made, tmp_path / "grid.nc")
     grid = rows.replace(material=vr.load_law(tmp_path / "grid.nc"))
     found, exact = (each.roll(1.0, 1.0, [0.0, 5.0, 10.0], torque=-0.35) for each in (grid, rows))
@@ -146,6 +146,11 @@ def test_grids_of_other_programs_roll(tmp_path):
     refused(lambda: grid.contact(0.1, delta=0.0, method="coupled"), "material is a grid of Q and M")
     most, known = (vr.resistance_extrema(each).M for each in (grid, rows))
     assert close(most, known, tol.GRID_MOTION)
+    ends, known = (each.steady(torque=0.05).V for each in (grid, rows))
+    assert close(ends, known, tol.GRID_MOTION)
+    free = grid.contact(0.1, delta=0.0).as_dict()
+    assert "beta" not in free
+    assert abs(free["delta_0"]) < tol.GRID_MOTION
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
     refused(lambda: grid.validity(0.1), "the roller of its materials (not of a grid) with coupled")
 

@@ -548,7 +548,8 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     contacts = Contacts(law, 1.0, 1.0)
     free = contacts.free_creep(u)
     found = contacts.fields(u, free, *names)
-    if law.cover is not None and "dM_dV" in names:  # along free rolling, whose creepage changes
+    # along free rolling, whose creepage changes
+    if not law.moment_of_speed_alone and "dM_dV" in names:
         slopes = "dM_ddelta", "dQ_dV", "dQ_ddelta"
         of_M, of_V, of_Q = contacts.fields(u, free, *slopes)
         found[names.index("dM_dV")] -= of_M * of_V / of_Q

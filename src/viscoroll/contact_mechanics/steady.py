@@ -496,7 +496,7 @@ def steady(
     loads = loads_of(scene, force, torque=torque, slope=slope, V=V)
     law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
-    elastic = law.alpha == 1.0
+    elastic = law.alpha == 1.0 and not law.gridded
     gained_by_omega = loads.gains.omega
     gained = bool(loads.gains.V or gained_by_omega)
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
@@ -566,7 +566,7 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
             f"{total[wrong][0]:g}",
             f"{allowed} (l0 is the contact length at rest; in a scene R = load = 1, R/l0 = kappa)",
         )
-    if not gain and law.alpha == 1.0:
+    if not gain and law.alpha == 1.0 and not law.gridded:
         return States.none()
     if not law.moment_of_speed_alone:
         load, sign, V = find_speeds(law, loads)
