@@ -134,7 +134,7 @@ REFUSED = [
             "(it has no attribute viscoroll_table = 'grid'): vr.tables.build": lambda: (
                 vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc")
             ),
-            "given.nc: is a grid of a law, not a material: read it by vr": lambda: (
+            "given.nc: is a grid or a result, not a material: read a grid by vr": lambda: (
                 vr.Material.from_netcdf(netcdf(grid()))
             ),
             "coordinate 'alpha' must be > 0 and increase strictly": lambda: vr.load_law(

@@ -417,7 +417,8 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
         raise FileError(path, "is a law, not a material: read it by vr.load_law")
     if {"V", "Q"} <= numbers.keys():
         raise FileError(
-            path, "is a grid of a law, not a material: read it by vr.load_law or vr.tables.load"
+            path,
+            "is a grid or a result, not a material: read a grid by vr.load_law or vr.tables.load",
         )
     if about.get("schema") != _SCHEMA:
         raise FileError(
