@@ -150,6 +150,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     assert close(most, known, tol.GRID_MOTION)
     ends, known = (each.steady(torque=0.05).V for each in (grid, rows))
     assert close(ends, known, tol.GRID_MOTION)
+    assert not grid.steady(torque=vr.Feedback(5.0, V=-0.1)).V.size  # 50 is beyond the grid
     free = grid.contact(0.1, delta=0.0).as_dict()
     assert "beta" not in free
     assert abs(free["delta_0"]) < tol.GRID_MOTION

@@ -447,11 +447,10 @@ def steady(
         torque (a slope alone counts as the force) or with a feedback, an array of alphas or
         materials, a layer too thin for its law, times of a material beyond 1e-100 to 1e100 T_ref,
         shapes that do not broadcast, labelled arrays beside plain ones or with other coordinates, a
-        unit of another dimension, kappa |V| above 1e100 or beyond a grid; without a gain on omega also kappa |force
-        + torque| in (0, 1e-120) or above 1e80; a gain on V, divided by the longest retardation
-        time, of a size outside
-        1e-40 to 1e8; a feedback that changes with time or has arrays of gains; what is no scene and
-        no cylinder.
+        unit of another dimension, kappa |V| above 1e100 or beyond a grid; without a gain on omega
+        also kappa |force + torque| in (0, 1e-120) or above 1e80; a gain on V, divided by the
+        longest retardation time, of a size outside 1e-40 to 1e8; a feedback that changes with time
+        or has arrays of gains; what is no scene and no cylinder.
 
     Warns
     -----
