@@ -387,8 +387,8 @@ def stress(
     Notes
     -----
     The error relative to the peak is below 1e-11 for alpha zeta from 1e-8 to 1e8
-    (``tests/test_stress.py``).  Where V or the creepage are arrays, the state of the contact takes
-    56 bytes for each of their elements, beside the result.
+    (``tests/test_stress.py``).  Where V or the creepage are arrays, each contact state (each
+    combination of V and creepage) takes 56 bytes, beside the result.
     """
     _, scene, scale = resolve_model(roller, "stress")
     creep_name = check_one_given(delta=delta, omega=omega)

@@ -95,14 +95,10 @@ def replace_file(path: FilePath) -> Iterator[Path]:
 
     path: path of the file to write or to replace.
     Yields the temporary path, at which no file is yet.
-
-    Raises
-    ------
-    FileError
-        If it is no path; if it cannot be written there: no such folder, a full disk, a read-only
-        folder or file, a directory, a device, a loop of links; or if the body wrote no file.  An
-        OSError of the body becomes a FileError too.  Where the last sync alone fails, that of the
-        folder, ``path`` is replaced already.
+    Raises FileError if it is no path; if it cannot be written there: no such folder, a full disk, a
+    read-only folder or file, a directory, a device, a loop of links; or if the body wrote no file.
+    An OSError of the body becomes a FileError too.  Where the last sync alone fails, that of the
+    folder, ``path`` is replaced already.
     """
     target = Path(os.path.realpath(as_path(path)))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
@@ -275,8 +271,7 @@ def fix_texts(dataset: Dataset) -> Dataset:
     """Return a ``dataset`` whose attributes have texts of fixed length, as netCDF's C library
     writes them.
 
-    Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``,
-    by the character set UTF-8 that the file states.
+    Octave, Fortran and ``nccopy -k classic`` read no others; Python gets ``str``, from UTF-8.
     """
     import h5py
     import numpy as np

@@ -329,9 +329,9 @@ def temperature(
     ParameterError
         A conductance <= 0, an ambient outside the range of the shift, a roller without material,
         shift or relaxation, a shift that does not fall with temperature, two bodies of different
-        materials or thicknesses that relax, a vertical shift of a cover, under a load beside an
-        elastic body, or where V follows from the load, neither V nor a load; and as
-        :func:`steady`.
+        materials, thicknesses, reference temperatures or shifts that relax, a vertical shift of a
+        cover, under a load beside an elastic body, or where V follows from the load, neither V nor
+        a load; and as :func:`steady`.
 
     Warns
     -----

@@ -71,8 +71,7 @@ class LawGrid:
     rows : :class:`.law_rows.CoupledRows` of V and delta, for kappa = 1: ``mu`` is the largest
         abs(Q), 1 where it is not known, Q is divided by it, and M has the units of the grid;
         ``slips`` says whether the contact slips fully at both ends of delta, at every speed: abs(Q)
-        is at least 1 - 1e-5 of its limit there, and so is known beyond the ends.  False without a
-        mu.
+        is at least 1 - 1e-5 of its limit there, and so is known beyond.  False without a mu.
     R : radius in m; 1 for a dimensionless grid.
     load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
     title : title of the file; "of another program" without one.
@@ -385,9 +384,8 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
     """
     if "alpha" not in table.dims:
         if alpha is not None:
-            raise ParameterError(
-                "alpha", describe_value(alpha), f"left out: {path} has no axis alpha"
-            )
+            words = f"left out: {path} has no axis alpha"
+            raise ParameterError("alpha", describe_value(alpha), words)
         return table
     nodes = table["alpha"].values
     if not (nodes[0] > 0.0 and (np.diff(nodes) > 0.0).all()):
@@ -409,9 +407,8 @@ def _in_si(table: Dataset) -> Dataset:
 
     table: dataset of a grid; V, delta, Q, M, M_half_space and M_cylinder, where present, must have
         an attribute ``units``; "1" is no unit.
-    Returns a dataset with doubles in the units of :data:`UNITS`; if the unit of V is "1" all must
-    be dimensionless, and the attributes R and load are 1.  Its attribute ``scale`` is the
-    :class:`.Scale` of its units.
+    Returns a dataset with doubles in the units of :data:`UNITS`, and their :class:`.Scale` as the
+    attribute ``scale``; with "1" for V all are dimensionless, and the attributes R and load are 1.
     Raises ParameterError for a unit that is missing or of another dimension, and in SI units for a
     missing attribute R or, beside mu, load.
     """

@@ -438,7 +438,8 @@ def fit_at_strain(
     Parameters
     ----------
     records : what :func:`viscoroll.read_dma` returns, one record or several, of which each point
-        has its ``strain``; points whose strains differ by less than a fifth are one set.
+        has its ``strain``; points whose strains differ by less than a fifth are one set.  A file of
+        one temperature must have one strain: read a file for each.
     cylinder : a :class:`viscoroll.Cylinder` without arrays, whose ``material`` is replaced by that
         of each fit; its nu, name, density, thickness and shift stay.
     V : speed, m/s.
