@@ -408,7 +408,7 @@ def ensemble(arguments: Namespace) -> None:
 def verify(arguments: Namespace) -> int:
     """Check every file of a results store against its checksum (SHA-256).
 
-    The exit code is 1 if a file differs or is missing, or if the run is not finished.
+    The exit code is 1 if a file differs or is missing (records/start: 2), or the run is unfinished.
 
     arguments: parsed command line with store, path of the folder of the results.
     Returns that code, True for 1, also for a run that is not finished.

@@ -374,8 +374,8 @@ def ensemble(
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map is used only
         where its stated error is at most ``rtol``, and only for the motions that it contains;
         all others are integrated, with "flow" too.  The result says which, and the map's error.
-        Driven and unsteady motions, and those of bodies that differ, are integrated: "flow" is
-        refused.
+        Driven and unsteady motions, and those of bodies that differ or of a law that is a grid,
+        are integrated: "flow" is refused.
     rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of
         the result are those after the cost of a standstill.  With a material each an unsteady
         motion takes some milliseconds more, for its N.

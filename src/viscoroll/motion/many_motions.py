@@ -103,7 +103,7 @@ def solve_batch(
             "motions differ in more than V0 and omega0"
             if free
             else "motions have a load, a brake, a drag, a prescribed speed or unsteady=True, or "
-            "the base is of another material"
+            "the base is of another material, or the law is a grid"
         )
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
