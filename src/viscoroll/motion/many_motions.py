@@ -87,8 +87,8 @@ def solve_batch(
     speed: highest speed, > 0, for which the flow map is made, dimensionless; None: the largest |V0|
     or |omega0|.  It is ignored, and not checked, where no map is tried.
     Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady
-    motions, or with bodies that differ (covers and grids included); where a map is tried, also for a
-    ``speed`` above 1e100; for a number of threads that is no whole number >= 1.
+    motions, or with bodies that differ (covers and grids included); where a map is tried, also for
+    a ``speed`` above 1e100; for a number of threads that is no whole number >= 1.
     Returns (the motions, a :class:`.flow.FlowResult`, times in T_ref; name -> value of
     "flow_error", the stated error of the flow map, NaN where none was tried, "flow_problem", why
     the scene has none, "flow", whether each motion is from the map, (n,), and "steps", steps of
