@@ -399,9 +399,9 @@ def ensemble(
     ParameterError
         NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
         unknown fields or method; method "flow" with parameters that differ between motions, with a
-        drive, with ``unsteady``, with bodies that differ, a cover or a grid; arrays with
-        labels beside arrays without, or with other labels; a number of threads that is no whole number >= 1; what
-        :func:`roll` refuses.
+        drive, with ``unsteady``, with bodies that differ, a cover or a grid; arrays with labels
+        beside arrays without, or with other labels; a number of threads that is no whole
+        number >= 1; what :func:`roll` refuses.
     Exception
         What a callable raises.
 
