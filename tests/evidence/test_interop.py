@@ -297,14 +297,13 @@ ROLLED = {
 @pytest.fixture(scope="module")
 def roller(tmp_path_factory):
     """A function of gamma, force, torque, rest, V, slip, time, calls and rtol, by a program of
-    vr_roll.h: the worst status of a call, and V, omega, x at the end.
+    vr_roll.h, for the law of the paper or of a cover: the worst status of a call, and V, omega, x
+    at the end.
     """
     need("command -v cc")
     place = tmp_path_factory.mktemp("roll")
-    tables.export(tables.law(11.0), place / "paper.h")
     shutil.copy(HEADERS / "vr_roll.h", place)
-    (place / "roll.c").write_text(
-        """\
+    program = """\
 #include <stdio.h>
 #include <stdlib.h>
 #include "paper.h"
@@ -321,11 +320,13 @@ int main(int count, char **text) {
   return 0;
 }
 """
-    )
-    output(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", place)
+    for name, law in (("paper", law_of(11.0)), ("cover", law_of(LINING))):
+        tables.export(law, place / f"{name}.h")
+        (place / "roll.c").write_text(program.replace("paper", name))
+        output(f"cc -std=c99 {_STRICT} roll.c -o {name} -lm", place)
 
-    def rolled(*numbers):
-        told = output(f"{place / 'roll'} {' '.join(map(repr, numbers))}")
+    def rolled(*numbers, law="paper"):
+        told = output(f"{place / law} {' '.join(map(repr, numbers))}")
         return [float(word) for word in told.split()]
 
     return rolled
@@ -348,6 +349,15 @@ def test_a_roller_of_c_in_steps_of_any_length(roller, name, calls, rest):
     exact = np.array([motion.V[0], motion.omega[0], motion.x[0]])
     assert status == 0
     assert close(np.array(found), exact, tol.INTEROP_TURNED, scale=abs(exact).max())
+
+
+def test_a_roller_of_c_on_a_cover_has_a_mirror_image(roller):
+    """Its onsets of full slip differ for traction along V and against it, also for V < 0."""
+    there, back = (
+        roller(0.5, -0.02 * side, -0.05 * side, 0.0, side, -0.01 * side, 3.0, 1, 1e-9, law="cover")
+        for side in (1.0, -1.0)
+    )
+    assert close(-np.array(back), np.array(there), tol.INTEROP_OF_COVERS)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])

@@ -141,13 +141,16 @@ def test_grids_of_other_programs_roll(tmp_path):
         lambda: grid.roll(100.0, 100.0, [0.0, 1.0]),
         lambda: grid.ensemble([1.0, 100.0], 1.0, 5.0),
         lambda: grid.ensemble([1.0, 9.0], 9.0, 5.0, torque=5.0),
+        lambda: grid.steady(V=100.0, torque=0.0),
     ):
         refused(beyond, "within the table")
     refused(lambda: grid.contact(0.1, delta=0.0, method="coupled"), "material is a grid of Q and M")
+    refused(lambda: grid.contact(0.1, delta=0.0, method="direct"), "where a material is given")
     most, known = (vr.resistance_extrema(each).M for each in (grid, rows))
     assert close(most, known, tol.GRID_MOTION)
     ends, known = (each.steady(torque=0.05).V for each in (grid, rows))
     assert close(ends, known, tol.GRID_MOTION)
+    assert not grid.steady(torque=vr.Feedback(5.0, V=-0.1)).V.size  # 50 is beyond the grid
     free = grid.contact(0.1, delta=0.0).as_dict()
     assert "beta" not in free
     assert abs(free["delta_0"]) < tol.GRID_MOTION

@@ -302,7 +302,7 @@ def evaluate_contact(
         refuse_overflow(arrays["kappa"], V, fastest)
     elif not abs(scene.kappa * float(V)) <= fastest:  # true of NaN too
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
-    if scene.material is not None and direct:
+    if (scene.material is not None or scene.gridded) and direct:
         raise ParameterError(
             "method",
             "'direct'",

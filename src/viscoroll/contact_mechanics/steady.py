@@ -44,7 +44,7 @@ from ..core import (
     strip_labels,
 )
 from ..laws import LawTable
-from .contact_table import Contacts
+from .contact_table import Contacts, refuse_beyond
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
@@ -447,11 +447,10 @@ def steady(
         torque (a slope alone counts as the force) or with a feedback, an array of alphas or
         materials, a layer too thin for its law, times of a material beyond 1e-100 to 1e100 T_ref,
         shapes that do not broadcast, labelled arrays beside plain ones or with other coordinates, a
-        unit of another dimension, kappa |V| above 1e100; without a gain on omega also kappa |force
-        + torque| in (0, 1e-120) or above 1e80; a gain on V, divided by the longest retardation
-        time, of a size outside
-        1e-40 to 1e8; a feedback that changes with time or has arrays of gains; what is no scene and
-        no cylinder.
+        unit of another dimension, kappa |V| above 1e100 or beyond a grid; without a gain on omega
+        also kappa |force + torque| in (0, 1e-120) or above 1e80; a gain on V, divided by the
+        longest retardation time, of a size outside 1e-40 to 1e8; a feedback that changes with time
+        or has arrays of gains; what is no scene and no cylinder.
 
     Warns
     -----
@@ -500,6 +499,7 @@ def steady(
     gained_by_omega = loads.gains.omega
     gained = bool(loads.gains.V or gained_by_omega)
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
+        refuse_beyond(law, loads.kappa * np.abs(loads.V))
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
         rolling = states_at(law, loads, load=moving, sign=np.sign(speed), V=np.abs(speed))

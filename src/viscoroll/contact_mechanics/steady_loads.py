@@ -317,13 +317,13 @@ def _cancelling_error(of_force: float, of_torque: float) -> ParameterError:
 
 def search_nodes(law: LawTable) -> Floats:
     """Return log2(kappa V) of the speeds between which steady speeds are sought, ascending, (n,):
-    of a table 6 an octave, 40 octaves beyond its nodes to both sides; else those of
-    :func:`.rolling_resistance.speed_nodes`.
+    of a table 6 an octave, 40 octaves beyond its nodes to both sides, of a grid not beyond its
+    fastest speed; else those of :func:`.rolling_resistance.speed_nodes`.
     """
     if law.coupled is None:
         return speed_nodes(law)
     low = np.log2(law.coupled.u[0]) - _FAR_OCTAVES
-    high = np.log2(law.coupled.u[-1]) + _FAR_OCTAVES
+    high = min(np.log2(law.coupled.u[-1]) + _FAR_OCTAVES, np.log2(law.coupled.fastest))
     return np.linspace(low, high, int(_DENSITY * (high - low)))
 
 

@@ -197,7 +197,7 @@ static int evaluate(instance *m) {
   vr_state s;
   vr_slopes d;
   double delta_0_V, delta_0 = vr_free_creep(&law, kappa, V, &delta_0_V);
-  vr_solve(&law, kappa, x[n_mu], V, (slip - keep * V * delta_0) / V, delta_0, &s, &d);
+  vr_solve(&law, kappa, x[n_mu], V, (slip - keep * V * delta_0) / V, delta_0, 1.0, &s, &d);
   int slow = fabs(keep) < 1.0;
   /* by the load over P: Q is a function of kappa V and kappa^2 slip, kappa M of kappa V,
       and kappa goes like load^(-1/2) */

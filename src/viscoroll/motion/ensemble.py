@@ -362,7 +362,8 @@ def ensemble(
         T_epsilon of an ``alpha``, else that of its material.
     V0, omega0 : start speeds, numbers or arrays (n,), divided by R/T_ref and 1/T_ref, or in m/s and
         rad/s; None where they are prescribed.  Labels of xarray and pandas come back in
-        ``to_xarray``.
+        ``to_xarray``; those of the roller's numbers and of the fields of a Schedule or a Feedback
+        are not compared with them: such arrays are taken in their order.
     t : output times, (times,), >= 0, ascending, common to all, divided by T_ref or in s; one
         number: the final state only.
     force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`;
@@ -380,7 +381,9 @@ def ensemble(
         motion takes some milliseconds more, for its N.
     fields : names of the quantities to compute, out of ``V omega x angle delta regime slip_loss
         rolling_loss``, and ``force torque work_force work_torque brake_loss``; only these are kept
-        in memory.  Works and losses are good to some rtol of the energy that moves.
+        in memory.  Works and losses are good to some rtol of the energy that moves, but on a table
+        of the coupled solution the division of the whole loss into slip and rolling only to 1e-3 of
+        that energy, where a motion passes from full to partial slip.
     speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the
         largest of the starts.  Where a large ensemble is computed in several calls, one number for
         all makes the

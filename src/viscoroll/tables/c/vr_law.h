@@ -212,9 +212,10 @@ static inline void vr_nothing(vr_state *s, vr_slopes *d) {
 }
 
 /* The state at a creepage less that of free rolling, delta_0, which the caller has taken off, and the slopes at fixed
- * delta_0, without what shear does; the creepage may be infinite.  d: the slopes, or a null pointer. */
+ * delta_0, without what shear does; the creepage may be infinite.  lean: factor of the asymmetry of a cover, 1 but near
+ * rest.  d: the slopes, or a null pointer. */
 static inline void vr_solve(const vr_law *law, double kappa, double mu, double V, double creepage, double delta_0,
-                            vr_state *s, vr_slopes *d) {
+                            double lean, vr_state *s, vr_slopes *d) {
   double u = kappa * fabs(V), f[5], m[2] = {0.0, 0.0}, a[2], b[2], p1, p2, q, delta = fabs(creepage);
   double sign = ((creepage > 0.0) - (creepage < 0.0)) * (V < 0.0 ? -1.0 : 1.0);
   if (!(kappa > 0.0 && mu > 0.0 && mu < HUGE_VAL && u <= 1e300 && delta >= 0.0)) {
@@ -227,6 +228,7 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
   double L = creep[VR_LIMIT], bend = 0.0, turn = 1.0, D = 2.0 * kappa * delta / mu, w;
   if (law->creep) { /* D = L |x|; turn: d(x + c x^2)/dx; bend: slope of D over u at fixed creepage */
     vr_excess of = vr_excess_at(mu, creep, slope);
+    of.c *= lean, of.dc *= lean;
     double side = creepage < 0.0 ? -1.0 : 1.0, part = D / L, x = HUGE_VAL;
     if (part < 1.0 + side * of.c) x = 2.0 * part / (1.0 + sqrt(1.0 + 4.0 * side * of.c * part));
     D = L * x, delta = 0.5 * mu * D / kappa, turn = 1.0 + 2.0 * side * of.c * x;
@@ -267,7 +269,7 @@ static inline void vr_contact_slopes(const vr_law *law, double kappa, double mu,
                                      vr_state *s, vr_slopes *d) {
   double slope, delta_0 = vr_free_creep(law, kappa, V, &slope);
   double creepage = fabs(slip) < HUGE_VAL ? vr_creepage(V, slip) - delta_0 : NAN;
-  vr_solve(law, kappa, mu, V, creepage, delta_0, s, d);
+  vr_solve(law, kappa, mu, V, creepage, delta_0, 1.0, s, d);
   if (law->creep && d && d->dQ_domega > 0.0) /* d(V delta_0)/dV */
     d->dQ_dV -= (delta_0 + fabs(V) * slope) * d->dQ_domega;
   vr_shear(law, kappa, mu, kappa * fabs(V), V < 0.0 ? -kappa : kappa, s, d);

@@ -42,12 +42,13 @@ static inline double vr_creep_speed(double V, double rest, double *slope) {
 }
 
 /* The contact near rest too: at V = 0, force and slopes are finite.  Slopes: dQ_domega at fixed V as ever; of Q over V
- * at fixed slip, unlike in vr_contact_slopes.  Below `rest` the moments without traction are in proportion to V. */
+ * at fixed slip, unlike in vr_contact_slopes.  Below `rest` the moments without traction, and the
+ * asymmetry of a cover, are in proportion to V; the slopes leave the change of the latter out. */
 static inline void vr_contact_near_rest(const vr_law *law, double kappa, double mu, double V, double slip, double rest,
                                         vr_state *s, vr_slopes *d) {
   double bend, speed = vr_creep_speed(V, rest, &bend), part = V / speed, more = (1.0 - part * bend) / speed;
   double slope, delta_0 = vr_free_creep(law, kappa, speed, &slope);
-  vr_solve(law, kappa, mu, speed, (slip - V * delta_0) / speed, delta_0, s, d);
+  vr_solve(law, kappa, mu, speed, (slip - V * delta_0) / speed, delta_0, part, s, d);
   d->dQ_dV = (d->dQ_dV + d->dQ_domega) * bend;
   if (law->creep) d->dQ_dV -= (delta_0 + V * slope * bend) * d->dQ_domega; /* d(V delta_0)/dV */
   d->dM_half_space_dV = part * bend * d->dM_half_space_dV + more * s->M_half_space;
