@@ -374,8 +374,8 @@ def ensemble(
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map is used only
         where its stated error is at most ``rtol``, and only for the motions that it contains;
         all others are integrated, with "flow" too.  The result says which, and the map's error.
-        Driven and unsteady motions, and those of bodies that differ or of a law that is a grid,
-        are integrated: "flow" is refused.
+        Driven and unsteady motions, and those of bodies that differ, of covers or of a grid, are
+        integrated: "flow" is refused.
     rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of
         the result are those after the cost of a standstill.  With a material each an unsteady
         motion takes some milliseconds more, for its N.
@@ -402,9 +402,9 @@ def ensemble(
     ParameterError
         NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
         unknown fields or method; method "flow" with parameters that differ between motions, with a
-        drive, with ``unsteady`` or with bodies that differ; arrays with labels beside arrays
-        without, or with other labels; a number of threads that is no whole number >= 1; what
-        :func:`roll` refuses.
+        drive, with ``unsteady``, with bodies that differ, a cover or a grid; arrays with labels
+        beside arrays without, or with other labels; a number of threads that is no whole
+        number >= 1; what :func:`roll` refuses.
     Exception
         What a callable raises.
 

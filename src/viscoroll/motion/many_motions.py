@@ -87,8 +87,8 @@ def solve_batch(
     speed: highest speed, > 0, for which the flow map is made, dimensionless; None: the largest |V0|
     or |omega0|.  It is ignored, and not checked, where no map is tried.
     Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady
-    motions, or with bodies that differ (covers included); where a map is tried, also for a
-    ``speed`` above 1e100; for a number of threads that is no whole number >= 1.
+    motions, or with bodies that differ (covers and grids included); where a map is tried, also for
+    a ``speed`` above 1e100; for a number of threads that is no whole number >= 1.
     Returns (the motions, a :class:`.flow.FlowResult`, times in T_ref; name -> value of
     "flow_error", the stated error of the flow map, NaN where none was tried, "flow_problem", why
     the scene has none, "flow", whether each motion is from the map, (n,), and "steps", steps of
@@ -103,7 +103,7 @@ def solve_batch(
             "motions differ in more than V0 and omega0"
             if free
             else "motions have a load, a brake, a drag, a prescribed speed or unsteady=True, or "
-            "the base is of another material, or the law is a grid"
+            "the law is not that of two half-spaces of one material"
         )
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
