@@ -327,6 +327,7 @@ REFUSED = each(
     {
         "given to the Material": vr.presets.RUBBER_CYLINDER,
         "rises at": with_shift(lambda T: T + 300.0),
+        "temperature = None": with_shift(WLF, vertical_shift="entropic", temperature=None),
         "load has shape": with_shift(WLF, thickness=0.03).replace(load=[1e4, 2e4]),
         "another one at each temperature": with_shift(
             WLF, vertical_shift="entropic", thickness=0.03

@@ -27,7 +27,9 @@ FILES = {
     + rows(T, 0.05 * E / 1e6, 5.0 + 0 * T): "tension",
     "Tempo [s],Modulo di rilassamento [MPa],Sforzo [MPa]\n" + rows(T, E / 1e6, E / 1e7): "tension",
     "時間[s],緩和弾性率[Pa]\n" + rows(T, E): "tension",
-    "Step time,Modulus,Torque\ns,MPa,N m\n" + rows(T, E / 1e6, T) + "\nEnd of test\n": "shear",
+    "Step time,Average modulus,Torque\ns,MPa,N m\n"
+    + rows(T, E / 1e6, T)
+    + "\nEnd of test\n": "shear",
     "log t (s),log E (Pa)\n" + rows(np.log10(T), np.log10(E)): "tension",
 }
 

@@ -137,7 +137,7 @@ def test_a_grid_of_another_program(tmp_path):
     labelled = law(*(xr.DataArray(each, dims="run") for each in (speeds, omega)))
     assert labelled.Q.identical(xr.DataArray(found.Q, dims="run", name="Q"))
     pint = pytest.importorskip("pint").UnitRegistry()
-    with_unit = law(pint.Quantity(3.6 * speeds, "km/h"), pint.Quantity(omega, "rad/s"))
+    with_unit = law(pint.Quantity(3.6 * speeds, "km/h"), pint.Quantity(0.036 * omega, "km/h/cm"))
     assert close(with_unit.M, found.M, tol.SCENE)
     moment = ROLLER.load * ROLLER.R
     assert close(found.Q, truth.Q, tol.COARSE_GRID, scale=ROLLER.load)
@@ -159,3 +159,6 @@ def test_a_grid_has_no_onset_and_no_stick_zone(tmp_path):
     assert np.isnan(roller.steady(V=0.5, torque=0.0).beta).all()
     law = vr.law(read)
     refused(lambda: law([1.0, 1.1], [1.0, 1.1, 1.2]), "V (2,), omega (3,) do not fit together")
+    tables.save(tables.build(SCENE, nodes, delta=[8.0, 9.0]), tmp_path / "ahead.nc")
+    ahead = vr.law(vr.load_law(tmp_path / "ahead.nc"))
+    refused(lambda: ahead(1.0, 1.0), "within the table")

@@ -274,7 +274,8 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
     Returns two floats; the offset, in ``target``, is 0 but for temperatures with different zeros.
     Raises ParameterError for a unit that pint does not know, or of another dimension than
     ``target``; an angle for a ratio ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of
-    atan(0.05)), and, for an angular velocity ("rad s-1"), 1/min and others but 1/s.
+    atan(0.05)), and, for an angular velocity ("rad s-1"), 1/min and others but 1/s
+    and such of lengths of pint, as kilometer / centimeter / hour for V/R.
     """
     import pint
 
@@ -291,7 +292,7 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
         raise ParameterError("unit", f"{unit:.40}, a unit that is not known", allowed) from error
     says = CYCLES.search(unit) is not None
     if unclear := {
-        "rad s-1": TURNS * (at_1 != 1.0 and not says),
+        "rad s-1": TURNS * (at_1 != 1.0 and not says and "meter" not in unit),
         "1": ", an angle" * says,
         "rad": ", a ratio" * (not says and unit.strip() not in _DIMENSIONLESS),
     }.get(target):

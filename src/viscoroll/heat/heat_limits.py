@@ -219,7 +219,9 @@ def _limit_of_cover(
     """
     if load is not None:
         return _limits(roller, allowed, given | {"load": load})
-    ln, slope, value = math.log(roller.load), _RISE, 0.0
+    ln = math.log(roller.load)
+    slope = _RISE
+    value = 0.0
     for coupled, last in zip((False, roller.coupled), _COVER_STEPS, strict=True):
         step = math.inf
         while abs(step) > last:
@@ -234,7 +236,8 @@ def _limit_of_cover(
                 worst = float(theta[k])
                 low, high = theta[max(k - 1, 0) : k + 2][[0, -1]]
                 theta = np.linspace(low, high, 65)
-            before, value = value, math.log(ratio[k])
+            before = value
+            value = math.log(ratio[k])
             slope = slope if step == math.inf else (value - before) / step
             # by a factor e at most
             step = min(max(-value / slope, -1.0), 1.0)

@@ -221,8 +221,10 @@ def _sampled(shift: Any, reference: float | None, vertical: Any) -> tuple[Floats
     reference: temperature of the material, degrees Celsius; None: that at which a_T is 1.
     vertical: vertical shift, as in :func:`vertical_factor`.
     Returns (temperatures, degrees Celsius, ascending and evenly spaced; a_T there), (n,) each.
-    Raises ParameterError for a shift that is not defined at the reference.
+    Raises ParameterError for a shift that is not defined at the reference, and a vertical one
+    without a reference.
     """
+    vertical_factor(vertical, reference or 0.0, reference)  # which is needed beside it
     low, high = getattr(shift, "range", _SAMPLED_RANGE)
     theta = np.linspace(low, high, _SAMPLES)
     a_T = np.full(theta.size, np.nan)

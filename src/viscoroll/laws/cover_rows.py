@@ -408,7 +408,8 @@ def _solve_node(
         start = _find_length(modes, u, y=rough, slope=slope, orders=orders, goal=goal)[0][-1]
         # a slope as good as one that is extrapolated
         y, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
-        start, slope = y[-1], (errors[1] - errors[0]) / (y[1] - y[0])
+        start = y[-1]
+        slope = (errors[1] - errors[0]) / (y[1] - y[0])
     y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
     slope = (errors[1] - errors[0]) / (y[1] - y[0])
     # epsilon = g/z of each solve; y has one entry more, the step after the last solve

@@ -70,8 +70,9 @@ class LawGrid:
     ----------
     rows : :class:`.law_rows.CoupledRows` of V and delta, for kappa = 1: ``mu`` is the largest
         abs(Q), 1 where it is not known, Q is divided by it, and M has the units of the grid;
-        ``slips`` says whether the contact slips fully at both ends of delta, at every speed: abs(Q)
-        is at least 1 - 1e-5 of its limit there, and so is known beyond.  False without a mu.
+        ``slips`` says whether the contact slips fully at both ends of delta, in both directions, at
+        every speed: abs(Q) is at least 1 - 1e-5 of its limit there, and so is known beyond.  False
+        without a mu.
     R : radius in m; 1 for a dimensionless grid.
     load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
     title : title of the file; "of another program" without one.
@@ -456,7 +457,7 @@ def _law_of(table: Dataset) -> LawGrid:
     limit = friction_limit(table.attrs)
     most = limit if limit < np.inf else 1.0
     Q = table["Q"].transpose("V", "delta").values
-    slips = bool((abs(Q[:, [0, -1]]) >= (1.0 - _ROUNDING) * limit).all())
+    slips = bool((Q[:, [0, -1]] * [-1.0, 1.0] >= (1.0 - _ROUNDING) * limit).all())
     bodies = [table[name] if name in table else 0.5 * table["M"] for name in _MOMENTS[1:]]
     moments = (field.broadcast_like(table["Q"]).transpose("V", "delta") for field in bodies)
     fields = np.stack([Q / most, *(field.values for field in moments)], axis=-1)

@@ -393,10 +393,9 @@ class Identification(Result):
             half = factor * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
             low = value - half
             high = value + half
-        ends = {"": value, "_low": low, "_high": high}
         found = {
             name + end: row
-            for end, rows in ends.items()
+            for end, rows in {"": value, "_low": low, "_high": high}.items()
             for name, row in zip(record.QUANTITIES, rows)
         }
         coordinates = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
