@@ -274,8 +274,8 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
     Returns two floats; the offset, in ``target``, is 0 but for temperatures with different zeros.
     Raises ParameterError for a unit that pint does not know, or of another dimension than
     ``target``; an angle for a ratio ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of
-    atan(0.05)), and, for an angular velocity ("rad s-1"), 1/min and others but 1/s
-    and such of lengths of pint, as kilometer / centimeter / hour for V/R.
+    atan(0.05)), and, for an angular velocity ("rad s-1"), 1/min and the like; 1/s is accepted, and
+    V/R in lengths as pint writes them ("kilometer / centimeter / hour").
     """
     import pint
 
