@@ -168,7 +168,7 @@ REFUSED += each(
     vr.Cylinder,
     {
         "T_epsilon = 0.5: must be >= T_sigma": {"T_epsilon": 0.5},
-        "material and E, nu, T_epsilon, T_sigma are both given": {"material": SOFT},
+        "E, nu, T_epsilon, T_sigma given beside material: must be left out": {"material": SOFT},
         "shapes R (2,), load (3,) do": {"R": [0.1, 0.2], "load": [1.0, 2.0, 3.0]},
         "T_sigma not given: give all of E, nu, T_epsilon and T_sigma, or a material": {
             "T_sigma": None

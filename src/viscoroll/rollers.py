@@ -27,7 +27,7 @@ from .core import (
     check_array,
     check_bool,
     check_choice,
-    exactly_one_error,
+    described_error,
     format_value,
     read_only,
     shape_error,
@@ -281,7 +281,9 @@ class Cylinder(Methods):
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
-            raise exactly_one_error("material", solid, both=True)
+            raise described_error(
+                solid, "given beside material", "left out, or the material left out"
+            )
         if material is None and missing:
             sentence = (
                 f"{missing} not given: give all of E, nu, T_epsilon and T_sigma, or a material"

@@ -377,7 +377,7 @@ REFUSED = [
             "temperature rises from 20 to 25 °C in steps of at most 0.5 K: must be equal "
             "within 1 K in each": {"temperature": np.linspace(20.0, 25.0, 20)},
             "omega has shape (20,): must be one number for each point, (0,)": {"temperature": []},
-            "reference = 30.0: must be within the temperatures of the curves, 20.0 to 20.0 °C": {
+            "reference = 30.0: must be from 20.0 to 20.0 °C, as the curves, or at most 0.5 K": {
                 "temperature": 20.0,
                 "reference": 30.0,
             },

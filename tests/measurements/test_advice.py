@@ -162,7 +162,7 @@ CASES = {
     ),
     "four columns without headings": (
         "<n; f; S/1e6; L/1e6>\n",
-        "these are called 'column 0', 'column 1'",
+        "have the headings 'column 0', 'column 1'",
         give(
             columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"},
             units=("Hz", "MPa"),

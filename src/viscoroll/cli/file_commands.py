@@ -135,7 +135,7 @@ def _units(text: str) -> Any:
     option(
         "--wlf",
         metavar="C1,C2,T0",
-        help="WLF parameters of the shift factors (default: shifts from the overlap of the curves)",
+        help="WLF parameters, T0 in degrees Celsius (default: shifts by the overlap of the curves)",
     ),
     option(
         "--on",

@@ -370,8 +370,8 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     starts = _start_values(about.variables, given, table, l0)
     if table.cover and not isinstance(given, Cylinder):
         warn_of_model(
-            "the FMU has the fast law, of a Cylinder with coupled=False, in place of the solution "
-            "of pressure and shear together: validity(V).traction of a Cylinder states its error"
+            "the FMU has the fast law (coupled=False) in place of the solution of pressure and "
+            "shear together: validity(V).traction of a Cylinder of these materials states the error"
         )
     fmpy = import_extra("fmpy", "fmu")
     compiler = shutil.which("cc")

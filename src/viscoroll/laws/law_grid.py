@@ -200,7 +200,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         raise FileError(
             path,
             "is not a grid of a law, since it has neither the variable M (the rolling moment at "
-            "each V) nor both M_half_space and M_cylinder: add M, or rename the variable that is M",
+            "each V) nor both M_half_space and M_cylinder: add it, or rename the moment to M",
         )
     for name in names:
         if not (table[name].size and table[name].dtype.kind in "iuf"):
@@ -257,7 +257,7 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
         place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first, strict=True))
         found = (
             f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at "
-            f"{place or variable.name}"
+            f"{place or 'its only node'}"
         )
         raise FileError(path, f"is not a grid of a law, since {found}: must be {allowed}")
 

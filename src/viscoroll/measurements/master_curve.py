@@ -177,7 +177,7 @@ def nearest(base: float, temperatures: Floats) -> int:
     high = temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
         raise ParameterError(
-            "reference", base, f"within the temperatures of the curves, {low} to {high} °C"
+            "reference", base, f"from {low} to {high} °C, as the curves, or at most 0.5 K outside"
         )
     return int(np.argmin(np.abs(temperatures - base)))
 

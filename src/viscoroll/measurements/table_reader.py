@@ -124,7 +124,7 @@ _REPEATED = 1.25
 _NAME_THEM = {
     "relaxation": "name the columns by columns={'time': HEADING, 'relaxation modulus': HEADING}",
     "dma": "name the columns by columns={'frequency': HEADING, 'storage': HEADING, 'loss': HEADING}"
-    " (in a shell: --column storage=HEADING for each)",
+    " ('angular frequency' for one in rad/s; in a shell: --column storage=HEADING for each)",
 }
 #: a number in degrees Celsius, or of three digits in kelvin, which is no rate, and none that a
 #: comma in a row of cells may have cut; before it what makes it the end of a range, as "20 to "
@@ -249,7 +249,8 @@ def understand(
             raise FileError(
                 path,
                 f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
-                f"({', '.join(bare)}); these are called {', '.join(map(repr, table.headings))}: "
+                f"({', '.join(bare)}): add a missing column to the file; of more columns, which "
+                f"have the headings {', '.join(map(repr, table.headings))} here, "
                 f"{_NAME_THEM[test]}",
             )
         named = dict(zip(bare, table.headings, strict=True))
@@ -411,7 +412,7 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     table.require(holds, f"an earlier row has the same {name} and another modulus: {advice}")
     if change.max(initial=0.0) > _SCATTER:
         warn_of_model(
-            f"{table.path}: rows of one {name} have moduli that differ by "
+            f"{table.path}: rows with the same {name} have moduli that differ by up to "
             f"{np.expm1(change.max()):.0%}, and are taken as repetitions of a test: {advice}"
         )
 

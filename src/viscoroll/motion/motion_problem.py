@@ -164,7 +164,7 @@ def make_problem(
     if rest is not None and np.ndim(scale["V"]):
         sentence = (
             f"rest = {rest!r:.60} is one threshold in m/s for all motions, but R or T_ref "
-            "(T_epsilon) differs between them: leave rest out, or make a call for each R and T_ref"
+            "(T_epsilon) differs between them: leave rest out, or give all one R and one T_ref"
         )
         raise ParameterError("rest", rest, "None", sentence)
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)

@@ -225,7 +225,9 @@ def _warm_bodies(
             theta, V = (np.broadcast_to(each, shape).flat[n] for each in (heat["ambient"], speed))
             text = f"= {theta:g} gives no allowed temperature at V = {V:g} m/s ({reason})"
             # a roller too hot needs less; a frequency outside of the data may be too high or low
-            raise described_error("ambient", text, "another; or change speed, load or conductance")
+            raise described_error(
+                "ambient", text, "another temperature; or change speed, load or conductance"
+            )
     # the coldest equilibrium, which a roller takes from cold
     theta = found.temperature[..., 0]
     warm = dict(bodies)

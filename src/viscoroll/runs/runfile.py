@@ -382,7 +382,9 @@ def _check_inputs(run: Run) -> None:
             raise section_error(run.path, number.section, number.key, problem) from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
-        _check_motions(run, values, "; some draws do this: truncate them")
+        _check_motions(
+            run, values, "; some draws do this: truncate distributions, or remove rows of files"
+        )
 
 
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:

@@ -152,8 +152,8 @@ def law(
             speeds = material.l0 / material.T_ref * np.logspace(-3.0, 3.0, 61)
             report = material.replace(coupled=False).validity(speeds)
             warn_of_model(
-                "the table has the fast law, of a Cylinder with coupled=False, in place of the "
-                "solution of pressure and shear together: "
+                "the table has the fast law (coupled=False) in place of "
+                "the solution of pressure and shear together: "
                 + (report.bodies if pair.covered is None else report.traction).sentence
             )
     else:

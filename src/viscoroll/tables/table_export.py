@@ -130,8 +130,8 @@ def _write_modelica(table: Dataset, path: Path) -> None:
         raise described_error(
             "table",
             f"has the axes {', '.join(table_files.axes_of(table))}",
-            "a grid over V and delta alone, the two inputs of a Modelica table; take one alpha by "
-            "table.sel(alpha=[...])",
+            "a grid over V and delta alone, the two inputs of a Modelica table; take one alpha, as "
+            "by table.isel(alpha=[0]), or build the grid with a single alpha",
         )
     if "M" not in table:
         raise described_error("table", "has no variable M", "a grid with M, as of vr.tables.build")
