@@ -55,7 +55,7 @@ SAID = {
     "|force + torque/R| = | N/m, the largest rolling moment divided by R (at V = 0. | "
     "m/s)": lambda: vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason,
     "above the friction mu = 0.2": lambda: PAPER.steady(force=0.3, torque=-0.28).reason,
-    "no single steady state: |Q|/load = 0.2 equals mu": lambda: (
+    "no single steady state: |Q|/load = 0.2 equals mu | lower the loads or raise": lambda: (
         PAPER.steady(force=-0.175, torque=0.225).reason
     ),
     "no isolated steady speed: elastic bodies roll without resistance, so every V is "

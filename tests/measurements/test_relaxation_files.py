@@ -66,7 +66,7 @@ REFUSED = each(
         "at 20 to 40 °C, and must be at one temperature: keep": (
             "Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n"
         ),
-        "line 4 (1; 1): an earlier row has the same time and another": (
+        "line 4 (1; 1): an earlier row has the same time | temperatures differ, give each a file": (
             "Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n"
         ),
         "looks like temperatures | columns={'temperature'": (

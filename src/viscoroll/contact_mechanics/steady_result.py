@@ -133,8 +133,8 @@ class Diagnosis(NamedTuple):
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 return (
-                    f"no single steady state: |Q|/load = {mu:.6g} equals mu, and {at} every omega "
-                    "with slip in the direction of the loads is steady; change the loads or mu"
+                    f"no single steady state: |Q|/load = {mu:.6g} equals mu, and {at} the cylinder "
+                    "slips steadily at any omega beyond a limit; lower the loads or raise mu"
                 )
             needed = f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}"
             return f"{needed}, above the friction mu = {mu:.6g}: lower the loads"

@@ -360,7 +360,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
         found = "a table of pressure and shear solved together, which an FMU cannot contain"
-        allowed = "the Cylinder, whose FMU has the fast law; vr.tables.export writes the table as C"
+        allowed = "its Cylinder (the FMU then has the fast law); tables.export writes a table as C"
         sentence = f"the law that is given is {found}: must be {allowed}"
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)  # which warns of a Cylinder

@@ -176,7 +176,7 @@ def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
         raise ParameterError(
             "shift",
             None,
-            "given to the Material that relaxes: vr.WLF(...), vr.Arrhenius(...) or a function",
+            "given to the Material that relaxes, as vr.WLF(...), in a file as key wlf or arrhenius",
         )
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
         pole = shift.pole

@@ -433,7 +433,7 @@ def _in_si(table: Dataset) -> Dataset:
     for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
         if name not in table.attrs:
             raise described_error(
-                f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit"
+                f"global attribute {name}", "is missing", f"given, in {unit}, as V has a unit"
             )
     return table.assign_attrs(scale=SI)
 

@@ -273,7 +273,7 @@ def check_law(content: Content, path: Any) -> None:
     if kind not in KINDS:
         raise FileError(
             path,
-            "is neither a law (of `viscoroll tables law`) nor a grid (of `viscoroll tables build`)",
+            "is neither a law (`viscoroll tables law`) nor a grid, which has variables V, delta, Q",
         )
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:

@@ -528,7 +528,7 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
             raise described_error(
                 "records",
                 f"have one without strain ({record.source or 'without source'})",
-                "records with a column of strain and its unit; for others call fit_prony(record)",
+                "of files with a column of strain and its unit; fit_prony(record) fits one without",
             )
         order = np.argsort(strains := np.asarray(record.strain), kind="stable")
         # cut behind each strain that the next one exceeds by more than the gap

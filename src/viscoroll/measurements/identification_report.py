@@ -453,7 +453,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     yield "alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)"
     yield "T_ref", f"{fit.T_ref:.6g} s (the longest relaxation time)"
     if fit.temperature is not None:
-        yield "temperature", f"{fit.temperature:g} °C, the temperature of these times"
+        yield "temperature", f"{fit.temperature:g} °C, at which the relaxation times hold"
     if getattr(fit, "strain", None) is not None:
         yield "strain", f"{fit.strain:.3g}, the amplitude of the test"
     if fit.points > fit.data[0].size:

@@ -408,7 +408,7 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     holds = np.ones(at.size, bool)
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
-    advice = "if temperatures differ, add a column of them; if strains differ, give each a file"
+    advice = "if strains or temperatures differ, give each a file (DMA: or a temperature column)"
     table.require(holds, f"an earlier row has the same {name} and another modulus: {advice}")
     if change.max(initial=0.0) > _SCATTER:
         warn_of_model(

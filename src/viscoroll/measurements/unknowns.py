@@ -221,8 +221,8 @@ def cylinder_of(
                 raise ParameterError(
                     record.label("temperature"),
                     record.temperature,
-                    f"left out, or given with shift={{{section!r}: vr.WLF(T0=20.0)}}, in a file "
-                    f"with wlf = {{ T0 = 20.0 }} in [{section}]",
+                    f"left out, or given with a shift of the body, as shift={{{section!r}: "
+                    f"vr.WLF(T0=20.0)}} or, in a file, wlf = {{ T0 = 20.0 }} in [{section}]",
                 )
             changed = changed.at(record.temperature, shift)
         if changed is not body:

@@ -141,7 +141,7 @@ def start_of(path: str | PathLike[str]) -> Record:
     if start is None:
         raise FileError(
             path,
-            "is not a results store, or a damaged one: repeat `viscoroll ensemble` with -o",
+            "is not a results store, or is damaged: repeat its `viscoroll ensemble` to repair it",
         )
     return start
 

@@ -48,7 +48,7 @@ KIND = "viscoroll_table"
 #: Kind of the file of a grid.
 GRID = "grid"
 #: What a user can do about a file that is not as it was written.
-_REBUILD = "write the file again by vr.tables.save, `viscoroll tables law` or `tables build`"
+_REBUILD = "make it again by vr.tables.law or build, or by `viscoroll tables law` or `tables build`"
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer
 #: and of the coupled solution alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
