@@ -272,10 +272,10 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
     unit, target: units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; ""
         and "1" of a ratio; 1 Hz is 2 pi rad/s.
     Returns two floats; the offset, in ``target``, is 0 but for temperatures with different zeros.
-    Raises ParameterError for a unit that pint does not know, or of another dimension than
-    ``target``; an angle for a ratio ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of
-    atan(0.05)), and, for an angular velocity ("rad s-1"), 1/min and the like; 1/s is accepted, and
-    V/R in lengths as pint writes them ("kilometer / centimeter / hour").
+    Raises ParameterError for a unit that is not known or of another dimension; an angle for a ratio
+    ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of atan(0.05)), and, for an angular
+    velocity ("rad s-1"), 1/min and the like; 1/s is accepted, and V/R in lengths as pint writes
+    them ("kilometer / centimeter / hour").
     """
     import pint
 

@@ -3,9 +3,8 @@
 A roller that starts cold takes the coldest equilibrium of its speed and load, whose temperature
 rises with both and jumps where the cold branch ends: the limit is where it passes the allowed one.
 At a given temperature the speed of a balance is unique, since V M(V) does not fall for any
-material; turning points are the extrema of that speed over the temperature.
-
-:func:`warming` integrates the balance of heat over time.
+material; turning points are the extrema of that speed over the temperature.  :func:`warming`
+integrates the balance of heat over time.
 """
 
 import math
@@ -46,20 +45,18 @@ DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab
 #: with an insulated side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
 BIOT_LIMIT = 0.75
-#: Speed up to which turning points are returned, m/s: beyond it the loss of a cold rubber no longer
-#: depends on the speed to rounding.
+#: Speed up to which turning points are returned, m/s: beyond it a cold rubber's loss is constant.
 FASTEST = 1e4
-#: ln of V, m/s, and of the load over that given, between which limits are sought: beyond them no
-#: roller runs.
+#: ln of V, m/s, and of the load over that given, where limits are sought: beyond no roller runs.
 _LN_RANGE = -70.0, 70.0
 #: Distance of ln V and of ln of a load from a limit at which it is found.
 _TOLERANCE = {"xatol": 1e-13, "xrtol": 1e-15}
-#: Part of the allowed rise by which a runaway misses it: at the end of a branch the temperature has
-#: an error of the square root of that of ln V.
+#: Part of the allowed rise by which a runaway misses it: its error is the root of that of ln V.
 _SHORT = 1e-5
 #: Steps of ln of a load of a cover after which its limit is found, by the fast law and that of the
-#: roller: a hundredth of a step is left.  Slope of ln heat by which the secant method starts.
+#: roller: a hundredth of a step is left.
 _COVER_STEPS = 1e-2, 1e-4
+#: Slope of ln heat over ln of the load by which the secant method starts: that of half-spaces.
 _RISE = 1.5
 
 

@@ -240,8 +240,7 @@ _MOMENTS = slice(3, 5)
 _FREE = slice(5, 7)
 #: functions that have a row each beside those of a table: L, f, g and the slopes
 _BESIDE = [_LIMIT, *range(5, _COUNT)]
-#: offset in ln z of the first solve, and of one on the other side of the length found, whose
-#: differences are the slopes of load and shift over z
+#: offset in ln z of the first and a last solve beside the length found: slopes are differences
 _OFFSET = 3e-5
 #: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row
 #: in 1/u

@@ -71,8 +71,7 @@ class LawGrid:
     rows : :class:`.law_rows.CoupledRows` of V and delta, for kappa = 1: ``mu`` is the largest
         abs(Q), 1 where it is not known, Q is divided by it, and M has the units of the grid;
         ``slips`` says whether the contact slips fully at both ends of delta, in both directions, at
-        every speed: abs(Q) is at least 1 - 1e-5 of its limit there, and so is known beyond.  False
-        without a mu.
+        every speed: abs(Q) is there at least 1 - 1e-5 of its limit, and known beyond; needs a mu.
     R : radius in m; 1 for a dimensionless grid.
     load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
     title : title of the file; "of another program" without one.
