@@ -16,7 +16,7 @@ contact are alpha_i = a_i z and beta_j = b_j z.
 
 The transforms of the surface displacements of a layer are those of a half-space times L (normal
 displacement by pressure), T (tangential displacement by shear) and C (tangential displacement by
-pressure).  L - 1 decays like exp(-2 k h): the layers add a smooth operator S to the Hilbert
+pressure).  L - 1 decays like (k h)^2 exp(-2 k h): the layers add a smooth operator S to the Hilbert
 transform, and to the memory of each creep mode an excess c.  The unknowns are the coefficients q up
 to order N = 14 + 6 theta; the exponentials of the relaxation modes enter by their first N
 coefficients, so that alpha may be arbitrarily large.
