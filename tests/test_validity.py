@@ -28,6 +28,7 @@ def test_numbers_are_those_of_the_contact():
     assert np.array_equal(found.under_axis.holds, state.epsilon <= 1.0)
 
 
+@pytest.mark.long
 def test_lengths_in_mm_give_one_warning():
     """A radius of 79.5 m is one of 79.5 mm, whose contact would look small."""
     tread = vr.Material(2e6, 0.49, vr.Prony([2.0, 6.0], [1e-2, 1e-4]), thickness=8.0)

@@ -10,6 +10,7 @@ import pytest
 import tolerances as tol
 from calls import STEEL, pair
 from closeness import close
+from long_cases import long
 from places import ROOT
 from refusals import refused
 
@@ -113,7 +114,7 @@ def losses_by_transforms(pair, u, profile):
     return mean / np.pi / np.trapezoid(profile.p, profile.nodes)
 
 
-@pytest.mark.parametrize("cover", [BELT, LINING, NIP, MIXED])
+@pytest.mark.parametrize("cover", [BELT, *long(LINING, NIP, MIXED)])
 def test_friction_and_losses_of_the_bodies_take_the_power_of_the_loads(cover):
     scene = scene_of(cover)
     pair = CoupledPair.of_scene(scene)

@@ -85,7 +85,7 @@ def test_the_line_of_rest():
         assert (np.sign([moved.V, moved.omega]) == np.sign(push)).all()
 
 
-@pytest.mark.parametrize("index", [4, 10, 13])
+@pytest.mark.parametrize("index", [4, *long(10, 13)])
 def test_the_stated_errors_bound_those_beside_the_coupled_solution(index):
     """Where they are largest; where both ends slip, the other method is named."""
     _, scene, u = covers.scenes()[index]

@@ -183,15 +183,14 @@ REFUSED = [
             "name = 'a': must be different for each record": {
                 "data": [vr.Resistance(HUMP, sigma=0.1, name="a")] * 2
             },
-            "data has records with values and records without: must be one kind: fit the "
-            "records with values": {
+            "data has values, but not of b: must be of one kind": {
                 "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
             },
             "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
             "run: V0 | a number, since no data determine it": {
                 "data": [vr.Coastdown(TIMES, sigma=0.1)]
             },
-            "temperature = 60.0 | given with shift={'material': vr.WLF(": {
+            "temperature = 60.0 | given with a shift of the body, as shift={'material': vr.WLF(": {
                 "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
             },
             "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},

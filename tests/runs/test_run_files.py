@@ -298,6 +298,11 @@ def test_a_file_by_two_names_is_one_file(here, sample):
         refused(lambda run=run: sobol_indices(run, 16), "m, [cylinder] E = rows of sample.csv")
     text = SAMPLED.replace('"mass"', '"name"')
     refused(lambda: run_of(text), "line 3", "'a' is not a number", error=vr.FileError)
+    sample.assign(mass="a").to_parquet("sample.parquet")
+    text = SAMPLED.replace(".csv", ".parquet")
+    refused(lambda: run_of(text), "line 3", "one column of numbers", error=vr.FileError)
+    sample.assign(mass=np.nan).to_parquet("sample.parquet")
+    refused(lambda: run_of(text), "line 3", "has nan in row 1", error=vr.FileError)
 
 
 @pytest.mark.parametrize("temperature", ["20.0", '{ distribution = "uniform", scale = 30.0 }'])

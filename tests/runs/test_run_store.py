@@ -103,7 +103,7 @@ def test_damage_is_found_and_put_right(run, tmp_path, whole, change):
         else:
             (store / name).write_bytes(data if change == "flip" else data[: len(data) // 2])
         if name == "records/start":
-            refused_file(lambda: verify(store), "a damaged one")
+            refused_file(lambda: verify(store), "or is damaged")
         else:
             assert not verify(store).ok, name
         assert run_ensemble(run, store) == ("7" in name), name

@@ -269,13 +269,12 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
     """Return factor and offset of a conversion: number in ``target`` = factor * number in
     ``unit`` + offset.
 
-    unit, target: units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; ""
-        and "1" of a ratio; 1 Hz is 2 pi rad/s.
+    unit, target: as people write them: "km/h", "N/mm²", "m s-1", "°C"; "" and "1" are a ratio's.
     Returns two floats; the offset, in ``target``, is 0 but for temperatures with different zeros.
     Raises ParameterError for a unit that is not known or of another dimension; an angle for a ratio
-    ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of atan(0.05)), and, for an angular
-    velocity ("rad s-1"), 1/min and the like; 1/s is accepted, and V/R in lengths as pint writes
-    them ("kilometer / centimeter / hour").
+    ("1"), a ratio for an angle ("rad"; a slope of 5 % is one of atan(0.05)), and 1/min and the like
+    for an angular velocity ("rad s-1"), where 1/s is accepted, V/R in lengths as pint writes them
+    ("kilometer / centimeter / hour"), and Hz, which is 2 pi rad/s.
     """
     import pint
 

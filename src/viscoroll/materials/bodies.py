@@ -261,8 +261,8 @@ class Bodies(OneOrMany):
     def __repr__(self) -> str:
         """Return the call that makes the pair; of many pairs their number and those of modes."""
         if self.shape:
-            modes = (body.E.shape[-1] for body in (self.cylinder, self.base))
-            return f"<{len(self)} cylinders and bases of {' and '.join(map(str, modes))} modes>"
+            one, other = (body.E.shape[-1] for body in (self.cylinder, self.base))
+            return f"<{len(self)} pairs, with {one} modes of the cylinder and {other} of the base>"
         poisson = "" if self.poisson is None else f", poisson={self.poisson!r}"
         return (
             f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r}{poisson})"

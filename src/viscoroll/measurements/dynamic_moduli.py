@@ -215,7 +215,7 @@ def data_of(
     ]
     for name, column in zip(names, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:
-            raise shape_error(name, column.shape, "one column of numbers, as long as the others")
+            raise shape_error(name, column.shape, "a vector (one axis), as long as the others")
     if values[0].size < fewest:
         raise described_error(
             names[0],

@@ -229,11 +229,12 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
         found[name] = record
     if not found:
         raise described_error("data", "is empty", "at least one record")
-    if len({bool(record.measured) for record in found.values()}) != 1:
+    planned = [name for name, record in found.items() if not record.measured]
+    if 0 < len(planned) < len(found):
         raise described_error(
             "data",
-            "has records with values and records without",
-            "one kind: fit the records with values first, then plan others with its fit.cylinder",
+            f"has values, but not of {', '.join(planned)}",
+            "of one kind: give these values, or fit the others and plan these with fit.cylinder",
         )
     return found
 

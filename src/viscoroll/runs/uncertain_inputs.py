@@ -585,14 +585,15 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
         advice = f"give the variable the attribute units, as '{unit}'"
     else:
         raise ValueError("a file of samples must end in .csv, .nc or .parquet")
+    if values.ndim != 1 or values.size == 0 or values.dtype.kind not in "iuf":
+        raise ValueError(
+            f"has shape {values.shape} and type {values.dtype}: must be one column of numbers"
+        )
     if path.suffix != ".csv":
         factor, offset = conversion_of_column(path, column, unit=given, wanted=unit, advice=advice)
         values = factor * values + offset
-    if (
-        values.ndim != 1
-        or values.size == 0
-        or values.dtype.kind not in "iuf"
-        or not np.isfinite(values).all()
-    ):
-        raise ValueError("must contain finite numbers, one in each row")
+    wrong = ~np.isfinite(values)
+    if wrong.any():
+        row = int(wrong.argmax())
+        raise ValueError(f"has {values[row]} in row {row + 1}: must contain finite numbers")
     return np.ascontiguousarray(values, np.float64)
