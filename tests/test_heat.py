@@ -268,6 +268,7 @@ def test_limits_are_those_of_the_equilibria():
     assert less.stable.tolist() == [True, False, True]
 
 
+@pytest.mark.long
 def test_limit_of_a_cover():
     """The temperature at the load that was found is the allowed one."""
     cover = ROLLER.replace(material=dataclasses.replace(RUBBER, thickness=0.03), load=3.4e4)
