@@ -78,7 +78,7 @@ same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 	$(RUN) -m pipeline.evidence.same --base $(BASE)
 
 # Two processes of tests would wait for each other's kernels.  The cache has them until a kernel changes.
-.venv/warm: .venv/dev $(shell find src/viscoroll/kernels -name '*.py' -o -name '*.npy')
+.venv/warm: .venv/runs $(shell find src/viscoroll/kernels -name '*.py' -o -name '*.npy')
 	$(BIN)/viscoroll warmup
 	touch $@
 
