@@ -13,7 +13,7 @@ from calls import file, of_materials
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.materials import Pair
+from viscoroll.materials import Pair, Solid
 from viscoroll.materials.material_toml import material_as_toml, read_materials
 
 pytestmark = pytest.mark.usefixtures("here")
@@ -91,6 +91,7 @@ def test_a_poissons_ratio_that_changes_with_time():
     for body, plane in (
         (rubber, "stress"),
         (dataclasses.replace(rubber, thickness=0.01), "strain"),
+        (Solid(1e7, 0.45, rubber.prony, 1.0, np.array([0.01, 0.02]), rubber.nu_instant), "strain"),
     ):
         with pytest.raises(vr.ParameterError, match="nu_instant is given"):
             Pair(body, vr.Material.rigid(), plane)

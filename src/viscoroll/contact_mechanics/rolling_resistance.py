@@ -175,7 +175,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     refuse_arrays(roller, scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None
-    if law.alpha == 1.0 and not scene.gridded:
+    if law.elastic:
         return ResistanceExtrema(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
     found = branches(law, 0.0)
     V = found.u[found.extremum] / scene.kappa

@@ -495,7 +495,6 @@ def steady(
     loads = loads_of(scene, force, torque=torque, slope=slope, V=V)
     law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
-    elastic = law.alpha == 1.0 and not law.gridded
     gained_by_omega = loads.gains.omega
     gained = bool(loads.gains.V or gained_by_omega)
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
@@ -507,7 +506,7 @@ def steady(
         rolling = scan_states(law, loads)
     else:
         rolling = _states_under_load(law, loads)
-    neutral = elastic and loads.given is None and not gained
+    neutral = law.elastic and loads.given is None and not gained
     resting = _loads_at_rest(law, loads, neutral)
     if resting.size:
         rolling = States.joined(rolling, States.at_rest(loads, resting, law))
@@ -515,7 +514,7 @@ def steady(
     count = np.bincount(existing.load, minlength=loads.mu.size)
     maximum = (
         (math.nan, math.nan)
-        if gained or elastic or law.coupled is not None
+        if gained or law.elastic or law.coupled is not None
         else branches(law, 0.0).maximum
     )
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
@@ -566,7 +565,7 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
             f"{total[wrong][0]:g}",
             f"{allowed} (l0 is the contact length at rest; in a scene R = load = 1, R/l0 = kappa)",
         )
-    if not gain and law.alpha == 1.0 and not law.gridded:
+    if not gain and law.elastic:
         return States.none()
     if not law.moment_of_speed_alone:
         load, sign, V = find_speeds(law, loads)

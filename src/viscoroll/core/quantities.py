@@ -65,8 +65,7 @@ def dimension_powers(dimension: str) -> dict[str, int]:
 
     dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer after a symbol is
         its power, with or without "^" between, and all symbols after the first "/" are divisors.
-    Returns a dict from symbol to power, an int other than 0: symbols whose powers cancel are left
-    out; {} of "".
+    Returns symbol -> power, an int other than 0, without symbols whose powers cancel.
     """
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
@@ -83,8 +82,7 @@ TIME_POWERS = {name: powers["T"] for name, powers in _POWERS.items() if "T" in p
 
 
 class Scale(dict[str, Any]):
-    """Unit of each quantity by its name: ``scale["V"]`` is the m/s of one unit of speed, 1 for a
-    scene.
+    """Unit of each quantity by its name: ``scale["V"]`` is the m/s of a unit of speed; 1 of scenes.
 
     Parameters
     ----------
@@ -118,9 +116,7 @@ class Scale(dict[str, Any]):
     __hash__ = object.__hash__  # type: ignore[assignment]
 
     def __missing__(self, name: str) -> Any:
-        """Compute the unit of a quantity at its first use, and keep it.
-
-        Python calls it for ``scale[name]`` where the dict has no entry.
+        """Compute and keep the unit of a quantity; Python calls it where the dict has no entry.
 
         name: name of the quantity, as "V".
         Returns the factor by which a dimensionless value is multiplied to be in SI units, a float,
@@ -290,12 +286,15 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
     except Exception as error:  # pint raises errors of its own parser and of Python's
         raise ParameterError("unit", f"{unit:.40}, a unit that is not known", allowed) from error
     says = CYCLES.search(unit) is not None
-    if unclear := {
-        "rad s-1": TURNS * (at_1 != 1.0 and not says and "meter" not in unit),
-        "1": ", an angle" * says,
-        "rad": ", a ratio" * (not says and unit.strip() not in _DIMENSIONLESS),
-    }.get(target):
-        raise ParameterError("unit", unit + unclear, allowed)
+    remark = ""
+    if target == "rad s-1" and at_1 != 1.0 and not says and "meter" not in unit:
+        remark = TURNS
+    elif target == "1" and says:
+        remark = ", an angle"
+    elif target == "rad" and not says and unit.strip() not in _DIMENSIONLESS:
+        remark = ", a ratio"
+    if remark:
+        raise ParameterError("unit", unit + remark, allowed)
     # Without an offset the factor is the converted 1 itself, so that exact ones stay exact.
     return (at_1 - at_0, at_0) if at_0 else (at_1, 0.0)
 
@@ -442,7 +441,8 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
         return value
     if unit.strip() in _DIMENSIONLESS and target != "rad":
         raise unit_error(name, "units of 1, without dimension", target)
-    if "delta" in unit if target == _TEMPERATURE else target != "rad s-1" and _HERTZ.search(unit):
+    cycles = target != "rad s-1" and _HERTZ.search(unit)
+    if cycles or (target == _TEMPERATURE and "delta" in unit):
         raise unit_error(name, unit, target)
     try:
         factor, offset = conversion_factor(unit, target)

@@ -449,8 +449,6 @@ def _law_of(table: Dataset) -> LawGrid:
     values that are not finite, speeds that are not positive, axes that do not increase or have a
     single node, other dimensions, or an R, or a mu and load, that are no finite numbers > 0.
     """
-    from scipy.interpolate import CubicSpline
-
     V = check_array("V", table["V"].values, above=0.0)
     delta = table["delta"].values.astype(float)
     limit = friction_limit(table.attrs)
@@ -469,6 +467,8 @@ def _law_of(table: Dataset) -> LawGrid:
     # 2 kappa times creepages, with kappa = 1
     edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
     if slips:  # then Q has a zero, the creepage of free rolling; else it is not used
+        from scipy.interpolate import CubicSpline
+
         # a row at a time: scipy leaves out a zero that the row before has too
         zeros = [CubicSpline(delta, row).roots(extrapolate=False) for row in fields[..., 0]]
         edges[:, 3] = [2.0 * zero[zero.size // 2] for zero in zeros]

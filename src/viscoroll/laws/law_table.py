@@ -285,6 +285,11 @@ class LawTable:
         return self.coupled is not None and not self.coupled.graded
 
     @cached_property
+    def elastic(self) -> bool:
+        """Whether no body relaxes; the alpha 1 of a grid stands for bodies that are not known."""
+        return self.alpha == 1.0 and not self.gridded
+
+    @cached_property
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`.law_record.Law`)."""
         made = pack_record(

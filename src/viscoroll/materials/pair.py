@@ -97,7 +97,8 @@ class Pair:
                 "plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)"
             )
         for body in (self.cylinder, self.half_space):
-            if body.nu_instant is not None and (self.plane, body.thickness) != ("strain", None):
+            layered = body.thickness is not None
+            if body.nu_instant is not None and (layered or self.plane != "strain"):
                 raise described_error(
                     "nu_instant",
                     "is given, as by bulk terms unlike those of shear, and the series of such a "
