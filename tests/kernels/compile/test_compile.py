@@ -2,6 +2,7 @@
 fail.
 """
 
+import gc
 import grp
 import hashlib
 import os
@@ -121,6 +122,20 @@ def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypat
     ):
         assert cubed(2.0) == 8.0
     assert square(2.0) == 4.0  # told once, and warnings are errors here
+
+
+def test_what_the_user_froze_stays_frozen(kernels):
+    """Compiling moves its own objects to the oldest generation of the garbage collector."""
+    gc.freeze()
+    try:
+        before = gc.get_freeze_count()
+        assert cubed(2.0) == 8.0
+        assert gc.get_freeze_count() > before // 2  # some of the frozen objects end
+    finally:
+        gc.unfreeze()
+    assert square(3.0) == 9.0
+    assert gc.isenabled()
+    assert gc.get_freeze_count() == 0
 
 
 # --- the cache ---

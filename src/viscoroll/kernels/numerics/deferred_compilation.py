@@ -45,7 +45,7 @@ _NOT_NEEDED = (
     "InlineClosureLikes",
     "InlineInlinables",
     "InlineOverloads",
-    "WithLift",
+    "WithLifting",
     "NopythonRewrites",
 )
 
@@ -57,9 +57,10 @@ def _shorter_front_end(typing, target):
 
     Remembered are the types of operations on numbers and of fields, the sizes of LLVM's types, for
     each of which LLVM parses a module, and whether numba's own functions that lower a statement
-    take its location: numba finds them again for each statement.  Left out are the place in the
-    source that numba adds to its errors (after an error numba's own compiler compiles the function
-    again, see :class:`EntryPipeline`) and the timers that numba starts for each function.
+    take its location: numba finds them again for each statement.  Left out are where variables live
+    between two passes, the imports by which numba looks for new functions, the place in the source
+    that numba adds to its errors (after an error numba's own compiler compiles the function again,
+    see :class:`EntryPipeline`) and the timers that numba starts for each function.
 
     typing, target : numba's typing context and target context.
     Yields None.  All replaced functions are restored when the block ends, also by an exception.
@@ -69,8 +70,12 @@ def _shorter_front_end(typing, target):
     if "resolve_getattr" in vars(typing):  # a kernel that is compiled for another one
         yield
         return
+    from numba.core.postproc import PostProcessor, VariableLifetime
+    from numba.core.transforms import canonicalize_cfg
+
     found: dict[Any, Any] = {}
     plain = types.Function.get_call_type
+    every = PostProcessor.run
 
     def get_call_type(function, context, args, kws):
         """Return numba's signature of a call; a call of the same function with numbers of the same
@@ -86,13 +91,44 @@ def _shorter_front_end(typing, target):
             found[function, args] = plain(function, context, args, kws)
         return found[function, args]
 
+    def process(processor, emit_dels=False, extend_lifetimes=False):
+        """Bring the blocks of a kernel into numba's canonical order, after a pass has changed them.
+
+        numba computes after each pass where each variable lives.  Only what follows the last pass
+        reads that, and asks for it by ``emit_dels``.
+
+        processor : numba's PostProcessor, of the kernel ``func_ir``.
+        emit_dels : whether numba marks the end of each variable.
+        extend_lifetimes : whether it does so as late as possible.
+        """
+        if emit_dels or processor.func_ir.is_generator:
+            return every(processor, emit_dels, extend_lifetimes)
+        kernel = processor.func_ir
+        kernel.blocks = canonicalize_cfg(kernel.blocks)
+        kernel.variable_lifetime = VariableLifetime(kernel.blocks)
+        kernel.generator_info = None
+
     def without_context(*text, **named):
         return nullcontext()
 
+    def without_effect():
+        pass
+
+    def install_registries():
+        """Make what was registered since the last time known to the target context, as numba does,
+        without importing numba's modules again, all of which are imported already.
+        """
+        for registry in tuple(target._registries):
+            target.install_registry(registry)
+
     once = lru_cache(maxsize=None)
+    target.refresh()  # imports all modules of numba that register functions
     with ExitStack() as replaced:
         for owner, name, function in (
             (types.Function, "get_call_type", get_call_type),
+            (PostProcessor, "run", process),
+            (typing, "load_additional_registries", without_effect),
+            (target, "load_additional_registries", install_registries),
             (typing, "resolve_getattr", once(typing.resolve_getattr)),
             (target, "get_abi_sizeof", once(target.get_abi_sizeof)),
             (base, "_has_loc", once(base._has_loc)),
@@ -138,7 +174,8 @@ def _without_garbage_collection():
     already.
 
     numba makes millions of objects that live until the compilation ends; collecting took a tenth of
-    its time.
+    its time.  At the end all objects are put into the oldest generation, which Python collects
+    seldom: the next collection would go through all of them.
 
     Yields None.  The state before the block is restored when it ends, also by an exception.
     """
@@ -147,6 +184,9 @@ def _without_garbage_collection():
     try:
         yield
     finally:
+        if not gc.get_freeze_count():  # else unfreezing would change what the user has frozen
+            gc.freeze()
+            gc.unfreeze()
         if enabled:
             gc.enable()
 
@@ -382,7 +422,32 @@ def _pipeline(library_class: type):
     """
     from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import PassManager, register_pass
-    from numba.core.typed_passes import NativeLowering
+    from numba.core.typed_passes import IRLegalization, NativeLowering
+
+    class Lower(lowering.Lower):
+        """numba's lowering of statements to LLVM.  Where no references are counted it does not load
+        the old value of a variable, which it would give back, nor overwrite it at its end.
+        """
+
+        def delvar(self, name):
+            """Do what numba does at the end of a variable: nothing where no references are counted.
+
+            name : the name of the variable, a str.
+            """
+            if self.context.enable_nrt:
+                super().delvar(name)
+
+        def storevar(self, value, name, argidx=None):
+            """Store a value into a variable.
+
+            value : the value, of LLVM.  name : the name of the variable, a str.
+            argidx : index of the argument of the kernel that is stored, or None.
+            """
+            if self.context.enable_nrt or name in self._singly_assigned_vars:
+                super().storevar(value, name, argidx)
+            else:
+                self._alloca_var(name, self.typeof(name))
+                self.builder.store(value, self.getvar(name))
 
     @register_pass(mutates_CFG=True, analysis_only=False)
     class Lowering(NativeLowering):
@@ -393,6 +458,10 @@ def _pipeline(library_class: type):
         """
 
         _name = f"lowering into {library_class.__name__}"
+
+        @property
+        def lowering_class(self):
+            return Lower
 
         def run_pass(self, state):
             # numba makes a library where there is none yet, and enables the same for its cache
@@ -435,6 +504,8 @@ def _pipeline(library_class: type):
             step.run_pass(state)
             step.run_finalizer(state)
 
+    lists: dict[bool, Passes] = {}
+
     class Compiler(CompilerBase):
         """numba's default compiler in nopython mode, with :class:`ShortFlags`, without the passes
         of :data:`_NOT_NEEDED`.
@@ -448,16 +519,21 @@ def _pipeline(library_class: type):
 
         def define_pipelines(self):
             """Return a list of one pass manager: numba's, with :class:`Lowering` and without some
-            passes.
+            passes; made once for kernels that allocate and once for the others.
             """
             # passes are named by their classes; ``why`` is numba's description of each
-            passes = Passes("nopython")
-            passes.passes = [
-                (Lowering if step is NativeLowering else step, why)
-                for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes
-                if step.__name__ not in _NOT_NEEDED
-            ]
-            passes.finalize()
-            return [passes]
+            counting = self.state.flags.nrt  # whether numba counts references
+            if counting not in lists:
+                passes = Passes("nopython")
+                passes.passes = [
+                    (Lowering if step is NativeLowering else step, why)
+                    for step, why in DefaultPassBuilder.define_nopython_pipeline(self.state).passes
+                    if step.__name__ not in _NOT_NEEDED
+                    # it writes where a variable ends, for the counts of references alone
+                    and (counting or step is not IRLegalization)
+                ]
+                passes.finalize()
+                lists[counting] = passes
+            return [lists[counting]]
 
     return Compiler
