@@ -73,6 +73,32 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     assert (slower.status, *slower.regime[:2]) == (vr.MotionStatus.UNSTEADY, 1, -1)
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # kappa below 1
+@pytest.mark.parametrize(
+    ("scene", "start", "until", "force", "torque", "last"),
+    [
+        ((2.6, 15.2, 0.34, 30.6, 2.0), (-0.01996, -0.01995), 0.13, 0.114, -0.723, 1),
+        ((8.1, 1.84, 0.053, 5.9, 0.23), (-0.1476, -0.1464), 0.0484, 0.496, 0.115, 1),
+        ((11.0, 21.4, 0.0181, 7.69, 0.354), (1.74e-3, 1.59e-3), 1.9, -8.9e-4, 0.0212, 1),
+        ((10.2, 8.2, 0.07, 27.0, 1.6), (0.0, 0.0), 8.0, 0.0, 0.023, 2),
+        ((11.9, 0.51, 0.0106, 10.0, 1.2), (0.0, 0.0), 8.0, 0.0194, 1.85e-4, 2),
+    ],
+)
+def test_it_ends_where_no_regime_can_follow(scene, start, until, force, torque, last):
+    """With N the creepage rises above delta_star, without it falls below: once it went on in
+    partial slip, up to 190 delta_star.  From rest there is no departure: once every step was used.
+    """
+    scene = vr.Scene(*scene)
+    with pytest.warns(RuntimeWarning, match=TOO_SLOW):
+        m = scene.roll(*start, until, force=force, torque=torque, unsteady=True).course
+    assert m.status == vr.MotionStatus.UNSTEADY
+    assert m.steps < 200
+    assert m.regime[-2:].tolist() == [last, -1]
+    limit = scene.contact(m.V[:-1], delta=0.0, fields="delta_star").delta_star
+    stuck = m.regime[:-1] == 1
+    assert (abs(m.delta[:-1]) <= 1.0001 * limit)[stuck].all()
+
+
 def test_the_last_state_is_told_where_the_last_step_cannot_be_repeated():
     """Cut at its end, the last step of this start from a standstill is given up earlier."""
     material = vr.Material(3e6, 0.49, DMA, 3.0)

@@ -392,7 +392,8 @@ _MESSAGES = (
     "V and omega were both 0, from where the motion is not unique: as mu is above 2 kappa (2 R "
     "divided by the contact length at rest), the cylinder can start in two directions",
     "the cylinder became too slow for unsteady=True: the added mass N of speed changes became as "
-    "large as the inertia (gamma N reached 1 + j, or -(1 + j)/2)",
+    "large as the inertia (gamma N reached 1 + j, or -(1 + j)/2), or so large that neither partial "
+    "slip, where N acts, nor full slip can follow",
     "the cylinder is too slow to leave the indentation of its standstill (rested), which would "
     "take more than seven tenths of the kinetic energy",
 )

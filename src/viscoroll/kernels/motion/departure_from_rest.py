@@ -57,6 +57,8 @@ ROLLS_OFF = 1
 SLIDES_OFF = 2
 #: Code of a departure: two motions satisfy the equations, the departure is not unique.
 AMBIGUOUS = 3
+#: Code of a departure: with the added mass no motion satisfies the equations.
+NO_DEPARTURE = 4
 #: Largest number of Newton iterations for d: a step outside the bracket bisects it, and 200
 #: bisections of [-1, 1] reach |d| = 1e-60.
 _MAX_ITERATIONS = 200
@@ -446,7 +448,9 @@ def depart_from_rest(tau, segment, work):
       ``tau``, dimensionless;
     - SLIDES_OFF: the Regime of full slip; 0, which is omega;
     - AMBIGUOUS: the cylinder may roll off in both directions, or may roll off as well as slide;
-      REGIME_AT_REST, 0.
+      REGIME_AT_REST, 0;
+    - NO_DEPARTURE: of a law with added mass, where the drive moves the cylinder but no departure
+      satisfies the equations; REGIME_AT_REST, 0.
     """
     scene = work.scene
     tau_drive = tau
@@ -494,7 +498,9 @@ def depart_from_rest(tau, segment, work):
     stick_zone_slip = 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa
     slides = _slide_from_rest(tau_drive, segment, braked, stick_zone_slip, work)
     if kind == STAYS_AT_REST:
-        return slides
+        # The added mass acts in partial slip only: it may leave neither regime.
+        none = slides[0] == STAYS_AT_REST and added_inertia(0.0, scene)[0] != 0.0
+        return (NO_DEPARTURE, REGIME_AT_REST, 0.0) if none else slides
     return (
         (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)
     )

@@ -66,6 +66,7 @@ from .collocation import (
 )
 from .departure_from_rest import (
     AMBIGUOUS,
+    NO_DEPARTURE,
     ROLLS_OFF,
     SLIDES_OFF,
     STAYS_AT_REST,
@@ -132,7 +133,9 @@ def _advance_at_rest(step_state, work):
       that one too;
     - AMBIGUOUS: the equations allow a departure in both directions, or rolling off as well as
       sliding, so that the motion is not unique; State of zeros, REGIME_AT_REST; the StepState at
-      the present time, with one trial step more; an output at that time is written.
+      the present time, with one trial step more; an output at that time is written;
+    - NO_DEPARTURE: the drive moves the cylinder, but with the added mass no departure satisfies the
+      equations; the rest as with AMBIGUOUS.
     """
     # d of partial slip; 0 in full slip, where it stands for omega.
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
@@ -143,7 +146,7 @@ def _advance_at_rest(step_state, work):
         if kind == STAYS_AT_REST
         else step_state.tau
     )
-    closed = kind == AMBIGUOUS or end == last_output_tau(work)
+    closed = kind != STAYS_AT_REST or end == last_output_tau(work)
     step_state = write_outputs_at_rest(end, closed, rest_code(step_state, work), step_state, work)
     return kind, State(0.0, 0.0), regime, step_state
 
@@ -167,6 +170,26 @@ def _is_below_rest_speed(moving, state, regime, step_state, work):
     if rest_speed == 0.0 or not moving:
         return rest_speed > 0.0
     return max(abs(state.V), abs(omega_and_delta(state, regime, work.scene)[0])) <= rest_speed
+
+
+@kernel
+def _ends_stick_zone(stick_formed, state, regime, step_state, work):
+    """Return whether the added mass ends a stick zone in the instant in which it forms; a bool.
+
+    The added mass acts in partial slip only.  Where it is large it may let |d| grow at |d| = 1,
+    although the slip without it falls there: neither regime can then follow.
+
+    stick_formed: bool, whether the stick zone has just formed; else the result is False, as it is
+    for a law without added mass.
+    state, regime: State and Regime in which it formed: partial slip with d = sigma.
+    step_state: StepState, with the time and its segment.
+    work: Workspace, of the motion; Scene and Drive are read.
+    """
+    return (
+        stick_formed
+        and added_inertia(state.V, work.scene)[0] != 0.0
+        and regime.sigma * current_rates(state, regime, step_state, work).weighted_rate > 0.0
+    )
 
 
 @kernel
@@ -364,7 +387,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     - STEP_TOO_SMALL: all trials of one step were rejected, and d does not relax within the rounding
       of time there, or has been relaxed at this time already;
     - NOT_UNIQUE: the departure from rest is ambiguous;
-    - ADDED_MASS_EXHAUSTED: the added mass leaves the range in which the equations are regular.
+    - ADDED_MASS_EXHAUSTED: the added mass leaves the range in which the equations are regular, or
+      with it neither partial nor full slip can follow, in motion or from rest.
 
     With the last four, outputs beyond the end of the integration are not written.
     """
@@ -377,7 +401,10 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
         moving, state, regime, step_state = _advance_segment(
             moving, state, regime, step_state, work
         )
-        if moving and added_mass_exhausted(event, state, regime, work):
+        if moving and (
+            added_mass_exhausted(event, state, regime, work)
+            or _ends_stick_zone(stick_formed, state, regime, step_state, work)
+        ):
             return ADDED_MASS_EXHAUSTED, write_due_outputs(state, regime, step_state, work)
         event = NO_EVENT
         direction = regime.direction
@@ -388,6 +415,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             departure, state, regime, step_state = _advance_at_rest(step_state, work)
             if departure == AMBIGUOUS:
                 return NOT_UNIQUE, step_state
+            if departure == NO_DEPARTURE:
+                return ADDED_MASS_EXHAUSTED, step_state
             moving = departure != STAYS_AT_REST
         elif step_state.tau >= last_output_tau(work):
             step_state = write_due_outputs(state, regime, step_state, work)

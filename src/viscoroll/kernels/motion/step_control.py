@@ -73,6 +73,9 @@ LEAST_TOLERANCE = 1e-14
 #: Rounding error of Q in a defect of V', divided by mu: some tens of units, as the extrapolation to
 #: the left end enlarges it.  No shorter step would reduce it.
 _STRONG_FRICTION_ROUNDING = 30.0 * ROUNDING
+#: Time in relaxation times of V, in full slip without a drive, above which V is at its equilibrium:
+#: traction and rolling moment cancel, and V' is their rounding or due to the error of V.
+_RELAXED_V = 1e3
 #: Error of the interpolants divided by the defect at the left end, which overestimates it: 0.02
 #: with nine nodes, and in proportion to (9/N)^2 errors for a given rtol were the same with five,
 #: seven and nine nodes.  With 0.005 errors of motions grow two to seven times, up to 3 rtol; with
@@ -217,7 +220,8 @@ def estimate_error(step, regime, work):
 
     - that of p, by its defect at the left end or by the last coefficient of V, whichever is larger,
       less what rounding of the drive and of strong friction causes; a defect above 1/30 of the
-      variation of p' on the step counts more, as the step does not resolve the solution;
+      variation of p' on the step counts more, as the step does not resolve the solution; of the
+      defect only the part counts that a fast relaxation of V in free full slip leaves;
     - the defect of the second unknown, of which only the part counts that its relaxation leaves at
       the end of the step; left out where its slope at the left end is not known (V = 0 in partial
       slip);
@@ -246,6 +250,9 @@ def estimate_error(step, regime, work):
         # V' may be a small difference of Q and f, in which 30 units of rounding of mu are left.
         if has_strong_friction(load_at_node(0, regime, work), regime, work.scene):
             error = max(error - _STRONG_FRICTION_ROUNDING * work.scene.mu * step.h, 0.0)
+    # As for d below: where V relaxes to its equilibrium within the step, its error does so too.
+    if unlikely(-nodes[ROW_P_DIAGONAL + N] > _RELAXED_V) and regime.full_slip and step.undriven:
+        error /= -nodes[ROW_P_DIAGONAL + N]
     error *= dV_dp  # From here on an error of V; ``variation`` too.
     # by how much p' varies between the nodes at which the equations are met
     smallest = largest = nodes[ROW_P_RATE + 1]
