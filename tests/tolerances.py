@@ -627,6 +627,8 @@ TABLE_ENERGY = 1e-6
 #: losses of a motion fall by less where friction touches 0, over all losses: 3e-10, the error of
 #: motions between their steps
 TABLE_LOSS = 1e-9
+#: Loss in slip up to the onset of partial slip against states without a table, relative; seen 2e-8
+TABLE_SLIP_LOSS = 1e-5
 #: The header of C of a table beside its kernels: rounding of the place in creep.
 TABLE_HEADER = 1e-11
 #: Its slopes, relative: the place in creep of a state near D_0 is a difference of creeps.

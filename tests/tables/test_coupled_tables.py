@@ -110,6 +110,19 @@ def test_motions_solve_the_equations_and_keep_energy(scene, omega0, force, torqu
     assert np.diff(m.rolling_loss).min() >= 0.0
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+def test_loss_in_slip_up_to_the_onset_of_partial_slip_is_that_of_the_states(scene):
+    """By Gauss's rule over states without a table.  The step of a motion passes the onset, and ends
+    there.
+    """
+    onset = scene.roll(2.0, 3.0, 4.0).onset_time
+    x, weights = np.polynomial.legendre.leggauss(8)
+    m = scene.roll(2.0, 3.0, [*(0.5 * onset * (1.0 + x)), onset, 4.0])
+    states = {"V": m.V[:8], "omega": m.omega[:8], "method": "coupled"}
+    power = scene_of(BELT).contact(**states, fields="loss_slip").loss_slip
+    assert close(m.slip_loss[8], 0.5 * onset * (weights @ power), tol.TABLE_SLIP_LOSS)
+
+
 def test_steady_rolling_is_where_motions_end_and_rest_stays(scene):
     slow = scene.steady(torque=0.03).V[0]
     motion = scene.roll(slow * 0.9, slow * 0.9, [400.0], torque=0.03)

@@ -320,11 +320,7 @@ def evaluate_contact(
         if material.gridded:
             refuse_fields(NOT_IN_GRIDS, names, "left out: a grid contains only Q and M")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
-    # of a table the kernel writes the distance of one onset from delta_0 in place of half the width
-    halved = (
-        "delta_star" in names and isinstance(material, LawTable) and material.coupled is not None
-    )
-    computed = computed_fields(names + ONSETS * halved, unlike)
+    computed = computed_fields(names, unlike)
     rows = evaluate_law(
         material,
         [*arrays.values()],
@@ -333,9 +329,6 @@ def evaluate_contact(
         names=computed,
         direct=direct,
     )
-    if halved:
-        star, low, high = (computed.index(name) for name in ("delta_star", *ONSETS))
-        rows[star] = 0.5 * (rows[high] - rows[low])
     return complete(names, computed, rows, shape)
 
 

@@ -381,9 +381,7 @@ def ensemble(
         motion takes some milliseconds more, for its N.
     fields : names of the quantities to compute, out of ``V omega x angle delta regime slip_loss
         rolling_loss``, and ``force torque work_force work_torque brake_loss``; only these are kept
-        in memory.  Works and losses are good to some rtol of the energy that moves, but on a table
-        of the coupled solution the division of the whole loss into slip and rolling only to 1e-3 of
-        that energy, where a motion passes from full to partial slip.
+        in memory.  Works and losses are good to some rtol of the energy that moves.
     speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the
         largest of the starts.  Where a large ensemble is computed in several calls, one number for
         all makes the

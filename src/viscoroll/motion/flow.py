@@ -27,7 +27,6 @@ from ..contact_mechanics import Parameters
 from ..core import (
     Floats,
     Integers,
-    MotionStatus,
     NDArray,
     broadcast_vector,
     load_kept,
@@ -581,7 +580,4 @@ def look_up_ensemble(
         threads=threads,
         progress=progress,
     )
-    # the kernel counts the onset; coming to rest is a change too, but of what stands from the start
-    moves = (V0 != 0.0) | (omega0 != 0.0)
-    result.switches[:] += moves & (result.status == MotionStatus.RESTED)
     return result

@@ -409,17 +409,16 @@ def _write_state(table, given, n, request):
     if to.beta >= 0:
         stick = value_at(STICK, at.cell, table)  # a spline may pass 0 and 1 by its error
         write_field(to.beta, min(max(stick, 0.0), 1.0), n, request)
-    # delta_star is the distance of the onset on the side of the state from free rolling: the side
-    # is that of the creep at Q = 0 here, of the middle creep in ``at``.
-    if max(to.delta_star, to.delta_0) >= 0:
+    if to.delta_0 >= 0:
         free = edge_at(FREE, at.u, at.speed, table).value
-        onset = edge_at(ONSET + np.int64(D >= free), at.u, at.speed, table).value
-        write_field(to.delta_star, 0.5 * abs(onset - free) / kappa, n, request)
         write_field(to.delta_0, 0.5 * free / kappa, n, request)
-    if max(to.delta_minus, to.delta_plus) >= 0:
-        for side, field in ((0, to.delta_minus), (1, to.delta_plus)):
-            onset = edge_at(ONSET + side, at.u, at.speed, table).value
-            write_field(field, 0.5 * onset / kappa, n, request)
+    if max(to.delta_star, to.delta_minus, to.delta_plus) >= 0:
+        low = 0.5 * edge_at(ONSET, at.u, at.speed, table).value / kappa
+        high = 0.5 * edge_at(ONSET + 1, at.u, at.speed, table).value / kappa
+        write_field(to.delta_minus, low, n, request)
+        write_field(to.delta_plus, high, n, request)
+        # half the distance of the onsets, which need not be at equal distances from delta_0
+        write_field(to.delta_star, 0.5 * (high - low), n, request)
     if max(to.Q, to.grip) >= 0:
         Q = _traction(given.mu, at, table)
         write_field(to.Q, Q, n, request)

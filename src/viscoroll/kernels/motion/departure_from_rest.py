@@ -9,9 +9,11 @@ the equation of d of :mod:`rhs` in the limit V -> 0, where L = 1 and H(v) = 1.  
 (of a cover with L (d + c d^2) + 2 kappa delta_0/mu in place of d on the right, with the asymmetry c
 of :mod:`.cover_law`).  V' and omega' follow from Q by Eq. (22), where the rolling moment is 0.
 
-The left side less the right side decreases with d where mu <= 2 kappa: for |d| < 1 there is one
-root, or slip is full from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on,
-where omega' = 0, and under a force close to the limit of friction the departure is not unique.
+Where V' > 0, as in every departure, the left side less the right side decreases with d from d = -2
+kappa/mu on, and a root at that d has omega' = 0.  Where mu <= 2 kappa these are all |d| < 1: there
+is at most one root with V' > 0, and if there is none, slip is full from the start.  Where mu > 2
+kappa it may increase below that d, and under a force close to the limit of friction the departure
+may be not unique.
 
 Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 

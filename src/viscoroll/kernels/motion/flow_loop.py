@@ -554,8 +554,8 @@ def look_up_motions(flow, motions, result, start, stop):
     result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these
         motions are written: out, (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or
         NOT_COVERED (-1); onset and rest, (n,), times t of the onset of partial slip and of coming
-        to rest, NaN where there is none up to the last output time; switches, (n,), 1 with an
-        onset, else 0.
+        to rest, NaN where there is none up to the last output time; switches, (n,), number of
+        changes of regime: the onset, and coming to rest unless V0 = omega0 = 0.
     start, stop : int, index of the first motion and of the one after the last.
 
     Distance and angle are written as x and angle, divided by gamma.  The rolling loss is the loss
@@ -590,7 +590,9 @@ def look_up_motions(flow, motions, result, start, stop):
                 one[ROLLING_LOSS, m] = lost - one[SLIP_LOSS, m]
         result.onset[i] = onset / gamma
         result.rest[i] = rest_time / gamma
-        result.switches[i] = 1 if onset >= 0.0 else 0  # 0 for NaN
+        # the onset, which may be NaN, and coming to rest, but not of what stands from the start
+        rests = result.status[i] == CAME_TO_REST and (V != 0.0 or omega != 0.0)
+        result.switches[i] = np.int64(onset >= 0.0) + np.int64(rests)
         for n in range(rows.size):
             row = rows[n]
             scale = 1.0 / gamma if row == OUT_X or row == OUT_ANGLE else 1.0

@@ -361,12 +361,19 @@ def friction_by_shear(V, omega, Q, kappa, mu, rows, table):
     D = 2.0 * kappa * slip / V if V > 0.0 else np.copysign(np.inf, slip)  # creep 2 kappa delta
     speed = locate_speed(u, table)
     state = place_of(D, u, speed, table)
-    cell = cell_at(speed, locate_creep(state.w, state.sigma, table), table)
+    w = state.w
+    sigma = state.sigma
+    # Full slip, in which Q is mu or -mu to the last bit, is told by Q, not by the creep: the nodes
+    # of a step that passes the onset have a smooth power, which its quadrature requires.
+    if abs(Q) == mu:
+        w = np.inf
+        sigma = np.copysign(1.0, Q)
+    cell = cell_at(speed, locate_creep(w, sigma, table), table)
     # Slip loss; the field is 2 kappa times it per unit of V.
     friction = 0.5 * V / kappa * max(value_at(FRICTION, cell, table), 0.0)
-    if state.w > 1.0:
+    if w > 1.0:
         # In full slip the field is that of the onset: mu times the speed by which the slip exceeds
         # that of the onset is added.
-        onset = edge_at(ONSET + np.int64(state.sigma > 0.0), u, speed, table).value
-        friction += mu * state.sigma * (slip - 0.5 * V * onset / kappa)
+        onset = edge_at(ONSET + np.int64(sigma > 0.0), u, speed, table).value
+        friction += mu * sigma * (slip - 0.5 * V * onset / kappa)
     return friction - slip * Q

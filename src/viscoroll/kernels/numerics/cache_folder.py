@@ -59,8 +59,8 @@ def _without_home() -> Path:
     user = os.geteuid() if hasattr(os, "geteuid") else "cache"
     folder = Path(os.environ.get("TMPDIR") or "/tmp") / f"viscoroll-{user}"
     warnings.warn(
-        f"there is no home directory: caches are in {folder} ($VISCOROLL_CACHE_DIR names another "
-        "folder)",
+        f"there is no home directory: caches are in {folder} (set VISCOROLL_CACHE_DIR to name "
+        "another folder)",
         RuntimeWarning,
         stacklevel=2,
     )
