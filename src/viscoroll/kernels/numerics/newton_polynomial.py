@@ -115,22 +115,20 @@ def evaluate_at_nodes(nodes, which, scratch):
 
 
 @inline_kernel
-def sum_of_rows(matrix, first, terms, factors, to, numbers):
-    """Write the sum of rows of 24 numbers, each times a factor: the product of a matrix and a
+def sum_of_rows(matrix, factors, to, numbers):
+    """Write the sum of 24 rows of 24 numbers, each times a factor: the product of a matrix and a
     vector.
 
     matrix : contiguous vector of doubles in which the rows follow each other.
-    first : int, index in ``matrix`` at which the first row begins.
-    terms : int, number of rows and of factors, >= 0.
     factors, to : int, indices in ``numbers`` at which the factors begin, and the sum.
     numbers : contiguous vector with the factors; the sum, 24 numbers, is written after all factors
-        have been read, so that the two may overlap; zeros if ``terms`` is 0.  Returns nothing.
+        have been read, so that the two may overlap.  Returns nothing.
     """
     # six vectors, the 24 numbers of a row, which stay in registers until all rows are added
     zero = broadcast(0.0)
     total = zero, zero, zero, zero, zero, zero
-    for n in range(terms):
-        total = fma4(load_row(matrix, first + TERMS * n), broadcast(numbers[factors + n]), total)
+    for n in range(TERMS):
+        total = fma4(load_row(matrix, TERMS * n), broadcast(numbers[factors + n]), total)
     store(numbers, to, total)
 
 
@@ -156,7 +154,7 @@ def to_powers(slow, limit, scratch):
         limit = scratch[NODE_VALUES + TERMS // 2]
         for k in range(TERMS):
             scratch[NODE_VALUES + k] -= limit
-    sum_of_rows(_TO_CHEBYSHEV, 0, TERMS, NODE_VALUES, _COEFFICIENTS, scratch)
+    sum_of_rows(_TO_CHEBYSHEV, NODE_VALUES, _COEFFICIENTS, scratch)
     if slow:  # Coefficients that are rounding are set to 0.
         largest = limit
         for k in range(TERMS):
@@ -164,5 +162,5 @@ def to_powers(slow, limit, scratch):
         for k in range(TERMS):
             if k == TERMS - 1 or abs(scratch[_COEFFICIENTS + k]) < _ROUNDING * largest:
                 scratch[_COEFFICIENTS + k] = 0.0
-    sum_of_rows(_SLOW_POWERS if slow else _POWERS, 0, TERMS, _COEFFICIENTS, NODE_VALUES, scratch)
+    sum_of_rows(_SLOW_POWERS if slow else _POWERS, _COEFFICIENTS, NODE_VALUES, scratch)
     scratch[NODE_VALUES] += limit  # the reference value back to the constant
