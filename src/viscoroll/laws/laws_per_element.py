@@ -266,7 +266,7 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     thinner than any of ``covers``, is so thin that the half contact at rest is longer than six
     thicknesses.
     """
-    from ..kernels.law import cover_law
+    from ..kernels.law import thickness_rows
     from ..kernels.law.law_record import E0, ROW_COUNT
 
     octave = _octave_of(covers.thickness)
@@ -298,8 +298,8 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
     return _lazy_record(
-        cover_law,
-        cover_law.select_cover,
+        thickness_rows,
+        thickness_rows.select_cover,
         max(record.marks[ROW_COUNT] for record in records),
         e0=records[0].marks[E0],
         cover_index=index,

@@ -71,10 +71,6 @@ def segment_start(index: int) -> int:
     return sum((s.high - s.low) * BINS * COEFFICIENTS for s in SEGMENTS[:index])
 
 
-#: Numbers of the table.
-TABLE_SIZE = segment_start(len(SEGMENTS))
-
-
 # --- The three Bessel ratios that carry the whole contact law, and their slopes ---
 
 #: Coefficients of the bins, as the module says.
@@ -126,19 +122,18 @@ def _r_power_series(terms: int) -> list[float]:
     return c
 
 
-def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
-    """Return the first coefficients a_n of the asymptotic series sum a_n x^-n of r or k, from the
+def asymptotic_series(sign: int) -> list[Decimal]:
+    """Return the first 17 coefficients a_n of the asymptotic series sum a_n x^-n of r or k, by the
     Riccati equations.
 
     sign : int, -1 for r = I1/I0, 1 for k = K0/K1.
-    terms : int, number of coefficients, > 0.
-    Returns [a_0 = 1, a_1, ...], a list of ``terms`` Decimals, in the digits of the current decimal
+    Returns [a_0 = 1, a_1, ...], a list of 17 Decimals, in the digits of the current decimal
     context.
     """
     # Of the Riccati equation the coefficient of x^-n is compared: r^2 or k^2 gives 2 a_0 a_n and
     # ``products``, the slope -(n - 1) a_(n-1), and r/x or k/z a_(n-1).
     a = [Decimal(1)]
-    for n in range(1, terms):
+    for n in range(1, 17):
         products = sum(a[i] * a[n - i] for i in range(1, n))
         step = (n - 2) * a[-1] if sign < 0 else -n * a[-1]
         a.append((step - products) / 2)
@@ -157,7 +152,7 @@ def _tail(sign: int) -> np.ndarray:
     Returns the 9 coefficients (COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant
     1/2 first, doubles.
     """
-    series = [-a for a in asymptotic_series(sign, 17)[1:]]
+    series = [-a for a in asymptotic_series(sign)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(COEFFICIENTS)]
     return Interpolation(nodes).coefficients(polyval(np.array(nodes), series))
 

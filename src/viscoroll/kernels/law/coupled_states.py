@@ -25,14 +25,16 @@ from ..numerics.jit import inline_kernel, kernel
 from .contact_elements import (
     Contact,
     assemble,
-    eliminate,
-    find_zones,
     make_mesh,
     moments,
     node_value,
-    pressure_and_strain,
     product,
     scale_mesh,
+)
+from .contact_zones import (
+    eliminate,
+    find_zones,
+    pressure_and_strain,
     solve_zones,
     strain_by_shear,
 )

@@ -1,4 +1,4 @@
-"""The law of covers of finite thickness: what it has besides its rows, and rows over thickness.
+"""The law of covers of finite thickness: what it has besides its rows.
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0,
 and numba compiles nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE`
@@ -35,12 +35,6 @@ where d in [-1, 1] is the creepage of a half-space over its delta_star, from whi
 |c| < 0.32, the asymmetry.  r is the excess in units of what it is limited to; where it is above 1
 both ends slip, and no law of this form holds.  Losses in slip stay above 0 for every r.
 
-Rows for one thickness after another are interpolated between laws at nodes, without root finding.
-Every number of a law is a polynomial of log2(h/l0) within an octave of the thickness h, and of
-ln(3 - 4 nu) where covers differ in Poisson's ratio nu.  It is the sum of the numbers of the laws at
-the nodes, each times a weight that depends on thickness and nu alone.  The head, the rows and the
-marks of a law, and the parts of a row, are those of :mod:`.law_record`.
-
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
 """
@@ -49,23 +43,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numerics.intrinsics import floats_at, integers_at, record_at, record_type
-from ..numerics.jit import inline_kernel, kernel
+from ..numerics.jit import inline_kernel
 from ..numerics.simd import SHORT_TERMS, evaluate_short_pair
-from .law_record import (
-    H_OVER_F2,
-    MAKER_MARKS,
-    MAKER_NUMBERS,
-    PART_SIZE,
-    PARTS_PER_ROW,
-    ROW_COUNT,
-    ROW_SIZE,
-    SELECTED,
-    VERSION,
-    select_index,
-)
-
-# --- What the law of a cover of finite thickness has besides its rows ---
 
 #: Index in the head: lam as u -> infinity; after it the coefficient of 1/u, as after each of the
 #: next six.
@@ -587,106 +566,3 @@ def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
         factor * (value + u * slope) / (k * uL_slope),
         factor * (2.0 * slope + u * curvature) / k,
     )
-
-
-# --- Rows for one thickness of a cover after another ---
-
-#: What these kernels read.  Addresses: rows, marks and cover rows of the law; the index of the
-#: cover of each state; the weights of each cover; for each cover the address of the laws of its
-#: octave and their number of rows.
-#: state_count: length of the indices, 1 or one for each state.  cover_count: number of covers.
-#: law_count: laws of an octave.
-SOURCE = record_type(
-    "rows marks cover_rows cover_index state_count weights octaves cover_count law_count"
-)
-#: Mark that is the address of the laws of the selected octave.
-_LAWS = MAKER_MARKS
-
-
-@inline_kernel
-def _interpolate(source, marks, first, to, out, count):
-    """Write numbers of the law of the selected cover, interpolated between the laws at the nodes of
-    its thickness.
-
-    Each number is the sum of those of the laws at the nodes, times weights whose sum is 1 (some may
-    be negative).
-
-    source : SOURCE record, with the weights of the nodes for each cover.
-    marks : ``marks`` of the law, with the selected cover, its number of rows, and the address of
-        the laws at the nodes of its octave.
-    first : int, index of the first number in each of the laws at the nodes (head, rows, then cover
-    rows).
-    to : int, index in ``out`` of the first number that is written.
-    out : vector of rows or cover rows of the law, of which ``count`` numbers are overwritten.
-    count : int, number of numbers.
-    Returns nothing.
-    """
-    # Numbers of the law at one node: head and rows, then the head and the rows of a cover.
-    law_size = (
-        (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
-    )
-    # addresses count bytes, 8 for a double
-    weights = floats_at(source.weights + 8 * source.law_count * marks[SELECTED], source.law_count)
-    for k in range(count):
-        out[to + k] = 0.0
-    # node by node, each in the order of memory
-    for j in range(source.law_count):
-        law = floats_at(marks[_LAWS] + 8 * (j * law_size + first), count)
-        weight = weights[j]
-        for k in range(count):
-            out[to + k] += weight * law[k]
-
-
-@kernel(allocates=True)
-def select_cover(n, source):
-    """Make the cover of a state the selected one: interpolate the head of its rows, and its cover
-    rows.
-
-    n : int, index of the state, >= 0, of those for which the law was made; not checked.
-    source : pointer to a SOURCE record.  If that cover is selected already, nothing is written.
-        Else the first eight numbers of the head of rows (:data:`.law_record.ALPHA` to those of
-        :data:`.law_record.FAST_CYLINDER`) and all cover rows are written, and in the head of marks
-        the index of the cover, a new version, the number of rows and the address of the laws of its
-        octave.
-
-    Rows of the law are then interpolated when they are first read (:func:`make_part`).  Returns
-    nothing.
-    """
-    source = record_at(source)
-    marks = integers_at(source.marks, PARTS_PER_ROW)
-    index = select_index(n, source.cover_index, source.state_count, marks)
-    if index >= 0:  # Another cover than before, whose data are to be written.
-        octaves = integers_at(source.octaves, 2 * source.cover_count)
-        marks[_LAWS] = octaves[2 * index]
-        count = octaves[2 * index + 1]
-        marks[ROW_COUNT] = count  # before the interpolation, which reads it
-        # the head of the rows, up to what belongs to the makers, and then the cover rows, which
-        # follow the head and all rows in the law of a node
-        _interpolate(source, marks, 0, 0, floats_at(source.rows, MAKER_NUMBERS), MAKER_NUMBERS)
-        size = COVER_FRONT_SIZE + COVER_ROW_SIZE * count
-        _interpolate(
-            source, marks, (count + 1) * ROW_SIZE, 0, floats_at(source.cover_rows, size), size
-        )
-
-
-@kernel(allocates=True)
-def make_part(number, source):
-    """Make a part of a row of the selected cover, by interpolation, and write it into the rows of
-    the law.
-
-    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in
-    the row/PART_SIZE.
-    source : pointer to a SOURCE record.  The 24 coefficients of a function, or 48 of a pair (L with
-        M/V, lam with epsilon, moments of the bodies), are written, and as mark ``number`` the
-        version of the cover.
-
-    Returns nothing.
-    """
-    source = record_at(source)
-    marks = integers_at(source.marks, number + 1)
-    start = PART_SIZE * number
-    count = (
-        2 * PART_SIZE if start % ROW_SIZE < H_OVER_F2 else PART_SIZE
-    )  # of a pair of functions, or of one
-    _interpolate(source, marks, start, start, floats_at(source.rows, start + count), count)
-    marks[number] = marks[VERSION]

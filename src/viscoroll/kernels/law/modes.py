@@ -70,9 +70,9 @@ from .material_series import (
 #: digits.
 _ASYMPTOTIC = 64.0
 #: Coefficients of the asymptotic series of r.
-_SERIES_R = to_doubles(asymptotic_series(-1, 17))
+_SERIES_R = to_doubles(asymptotic_series(-1))
 #: Coefficients of the asymptotic series of k.
-_SERIES_K = to_doubles(asymptotic_series(1, 17))
+_SERIES_K = to_doubles(asymptotic_series(1))
 #: From this multiple of the longest creep time on N has its limit V -> 0, to rounding.
 _SLOW = 1e17
 #: Below this multiple of the shortest relaxation time N has its limit of fast rolling, to rounding.

@@ -20,10 +20,10 @@ Terms of this file (g, h and the formulas of the modes are those of :mod:`.mater
 
 At the nodes z = 2^(n/10) the formulas of the modes give lam and eta/F = z/(z + g), and with them a
 point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v
-through the 36 points around an octave (:mod:`.simd`) is evaluated at the nodes of that octave.  The
-polynomial of the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No root
-is solved for and no slope is needed (docs/internals_law.md, Series and pairs).  A row depends on
-its material alone, not on the rows that were made before.
+through the 36 points around an octave (:mod:`.newton_polynomial`) is evaluated at the nodes of that
+octave.  The polynomial of the slow row goes through points at Chebyshev nodes of 1/z and is one in
+t.  No root is solved for and no slope is needed (docs/internals_law.md, Series and pairs).  A row
+depends on its material alone, not on the rows that were made before.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
@@ -37,22 +37,19 @@ import numpy as np
 from ..numerics.interpolation import chebyshev, to_doubles
 from ..numerics.intrinsics import floats_at, integers_at, record_at, record_type
 from ..numerics.jit import inline_kernel, kernel
-from ..numerics.simd import (
+from ..numerics.newton_polynomial import (
     ARGUMENTS,
     FUNCTION_STRIDE,
-    LANES,
     NODE_VALUES,
     NODES,
     POINT_COUNT,
     SCRATCH_SIZE,
-    TERMS,
     VALUES,
     divided_differences,
     evaluate_at_nodes,
-    pack,
     to_powers,
-    unpack,
 )
+from ..numerics.simd import LANES, TERMS, pack, unpack
 from .law_record import (
     E0,
     H_OVER_F2,
@@ -173,7 +170,7 @@ class Grid(NamedTuple):
     """The grid of the selected material, and the rows that are made from it.
 
     rows : vector of the law with its head, up to the part that is made and one more, written.
-    scratch : vector of :mod:`.simd`.
+    scratch : vector of :mod:`.newton_polynomial`.
     functions : (node_count, 12), values at the nodes in the order of _L to _LN_ETA_OVER_F; the last
         36 nodes are the points of the slow row.
     node_count : int.
@@ -220,8 +217,8 @@ def grid_size(count: int, alpha: float) -> int:
 
 
 def work_size(nodes: int) -> int:
-    """Return the number of doubles of the scratch of a grid: that of :mod:`.simd`, then twelve
-    functions at each node; an int.
+    """Return the number of doubles of the scratch of a grid: that of
+    :mod:`.newton_polynomial`, then twelve functions at each node; an int.
 
     nodes : int, number of nodes, as of :func:`grid_size`.
     """
