@@ -204,7 +204,7 @@ def _warm_bodies(
     Returns the bodies, of which those that relax are at the coldest equilibrium: a
     :class:`Material` of one temperature, a :class:`Solid` of several.
     Raises ParameterError for a material that is uncertain itself, and as
-    :func:`.temperature.temperature`.
+    :func:`viscoroll.temperature`.
     """
     heat = content["heat"]
     speed = heat.get("speed", content["start"].get("V0"))
