@@ -496,8 +496,8 @@ def piecewise(
     end: float,
     rtol: float,
     *,
-    low: float = -np.inf,
-    resolve: float | None = None,
+    low: float,
+    resolve: float | None,
 ) -> Piecewise:
     """Return a function of time that acts on motions as piecewise polynomials, checked.
 
