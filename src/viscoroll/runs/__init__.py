@@ -23,6 +23,7 @@ from concurrent.futures import (
     CancelledError,
     Executor,
     ThreadPoolExecutor,
+    as_completed,
     wait,
 )
 from contextlib import ExitStack, contextmanager
@@ -219,9 +220,7 @@ def _evaluate_missing(
                 done, running = wait(running, return_when=FIRST_COMPLETED)
                 yield from (future.result() for future in done)
         advance(store.run.settings.n - checked, on_disk=True)
-        while running:
-            done, running = wait(running, return_when=FIRST_COMPLETED)
-            yield from (future.result() for future in done)
+        yield from (future.result() for future in as_completed(running))
     finally:
         for future in running:
             future.cancel()
