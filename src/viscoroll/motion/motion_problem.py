@@ -19,6 +19,7 @@ from ..contact_mechanics import (
     refuse_beyond,
     refuse_cover,
     resolve_model,
+    warn_of_start,
 )
 from ..contact_mechanics.contact import contact
 from ..core import (
@@ -120,6 +121,12 @@ class MotionProblem(NamedTuple):
     limits: tuple[float, float, int]
     unsteady: bool
     driven: bool
+
+    def warn_of_start(self, start: tuple[Any, Any]) -> None:
+        """Warn of motions for which the model fails grossly, judged by their ``start``, V and omega
+        as the caller gave them; None for a prescribed one.
+        """
+        warn_of_start(self.roller, self.scene, start, self.V0, self.omega0, self.driven)
 
 
 def make_problem(
