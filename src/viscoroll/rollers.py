@@ -550,12 +550,7 @@ class Cylinder(Methods):
         check_array("gamma (load times T_ref^2, divided by m R)", gamma, above=0.0)
         material = "alpha" if isinstance(law, float | np.ndarray) else "material"
         return Scene(
-            kappa=kappa,
-            gamma=gamma,
-            mu=self.mu,
-            j=self.j,
-            coupled=self.coupled,
-            **{material: law},
+            kappa=kappa, gamma=gamma, mu=self.mu, j=self.j, coupled=self.coupled, **{material: law}
         )
 
     @cached_property

@@ -292,12 +292,7 @@ class Steady(Equilibria):
     _ranges = ("V",)
 
     def __init__(
-        self,
-        loads: Loads,
-        states: States,
-        reasons: Diagnosis,
-        scale: Scale,
-        labels: Labels | None,
+        self, loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None
     ) -> None:
         """Pack steady states, one after another, into arrays over loads and equilibria, in the
         units of the roller.

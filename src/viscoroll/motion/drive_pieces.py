@@ -29,14 +29,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 
-from ..core import (
-    Floats,
-    NDArray,
-    Schedule,
-    check_array,
-    require_time_argument,
-    shape_error,
-)
+from ..core import Floats, NDArray, Schedule, check_array, require_time_argument, shape_error
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 from .motion_arguments import dimensionless_error
 
@@ -214,12 +207,7 @@ class _Sampled:
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
         piece = Piece(
-            start=start,
-            stop=stop,
-            terms=np.zeros(TERMS),
-            largest=0.0,
-            error=largest,
-            so_far=so_far,
+            start=start, stop=stop, terms=np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far
         )
         if largest <= zero:
             return piece, None
@@ -491,13 +479,7 @@ class Piecewise(NamedTuple):
 
 
 def piecewise(
-    name: str,
-    function: Any,
-    end: float,
-    rtol: float,
-    *,
-    low: float,
-    resolve: float | None,
+    name: str, function: Any, end: float, rtol: float, *, low: float, resolve: float | None
 ) -> Piecewise:
     """Return a function of time that acts on motions as piecewise polynomials, checked.
 

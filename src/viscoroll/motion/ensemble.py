@@ -8,14 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import (
-    FASTEST,
-    Roller,
-    Validity,
-    refuse_beyond,
-    scale_of,
-    warn_of_speeds,
-)
+from ..contact_mechanics import FASTEST, Roller, Validity, refuse_beyond, scale_of, warn_of_speeds
 from ..contact_mechanics.validity import validity
 from ..core import (
     Booleans,

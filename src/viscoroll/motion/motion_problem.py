@@ -45,15 +45,7 @@ from .drive_functions import (
     prepare_drive,
     refuse_rest,
 )
-from .motion_arguments import (
-    LOSSES,
-    ROWS,
-    STATES,
-    Drive,
-    controls,
-    require_single,
-    with_scales,
-)
+from .motion_arguments import LOSSES, ROWS, STATES, Drive, controls, require_single, with_scales
 
 #: Indices of all rows of the kernel's output.
 _ALL_ROWS = np.arange(len(ROWS))

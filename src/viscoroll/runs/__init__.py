@@ -49,14 +49,7 @@ from ..core import (
 from .run_records import Record, encoded
 from .run_results import RunResults, export_netcdf, open_run, verify
 from .run_rollers import roller_of
-from .run_store import (
-    Store,
-    block_content,
-    block_inputs,
-    locked,
-    roll_inputs,
-    warn_of_materials,
-)
+from .run_store import Store, block_content, block_inputs, locked, roll_inputs, warn_of_materials
 from .runfile import Run, read_run
 
 __all__ = [
