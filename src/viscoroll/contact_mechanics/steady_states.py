@@ -388,7 +388,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     part = np.abs(Q) / mu
     exists = part < 1.0
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
-    (star, lam, rise) = free[2:]
+    star, lam, rise = free[2:]
     faster = V / root
     rolling = contacts.free_creep(faster)
     less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")

@@ -362,7 +362,7 @@ def temperature(
     (:func:`viscoroll.uniform_temperature`).
     """
     level = roller
-    (roller, scene, scale) = resolve_model(roller, "temperature", slope=slope)
+    roller, scene, scale = resolve_model(roller, "temperature", slope=slope)
     driven = {"force": force, "torque": torque, "slope": slope}
     given = {"V": V, "ambient": ambient, "conductance": conductance} | driven
     plain, labels = strip_labels(given, scale)

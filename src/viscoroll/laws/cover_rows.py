@@ -549,7 +549,7 @@ def _fit_fast_rows(
         y, values, limits=limits, wanted=x_inverse, degrees=_DEGREES, log_terms=log_terms
     )
     slopes[_MOMENTS] = (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
-    fitted[_MOMENTS] = fitted[_MOMENTS] * x_inverse
+    fitted[_MOMENTS] *= x_inverse
     # coefficients of y = begin/u become those of 1/u; M/V was divided by y, and its own are of
     # 1/u^2
     first *= begin

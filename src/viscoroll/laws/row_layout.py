@@ -349,7 +349,7 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     from_top[-1] = 0.0
     # its last but one entry, up to the end of the last row, belongs to no origin and is deleted
     # below
-    from_rest[:-2] = from_rest[:-2] - to_begin
+    from_rest[:-2] -= to_begin
     pairs = np.stack([N, integral], axis=1).reshape(len(N), 2, -1, 2).swapaxes(1, 2)
     return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
 

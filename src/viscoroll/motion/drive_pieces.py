@@ -439,8 +439,7 @@ def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
     """Return the product of two matrices; its bits do not depend on numpy's library of linear
     algebra.
     """
-    product = np.einsum("ij,jk->ik", A, B)
-    return product
+    return np.einsum("ij,jk->ik", A, B)
 
 
 # --- Numbers, schedules and fits as pieces ---

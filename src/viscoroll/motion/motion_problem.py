@@ -153,7 +153,7 @@ def make_problem(
     if single:
         require_single(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
     drive = drive.without_zeros() if acts else drive
-    (rtol, rest, max_steps, resolve, unsteady, rested) = options
+    rtol, rest, max_steps, resolve, unsteady, rested = options
     roller, scene, scale = resolve_model(
         roller, "roll" if single else "ensemble", moves=True, slope=drive.slope
     )
