@@ -25,14 +25,14 @@ from .core.errors import MotionStatus as MotionStatus
 from .core.errors import ParameterError as ParameterError
 from .core.errors import ViscorollError as ViscorollError
 from .core.results import Values as Values
+from .heat import Temperatures as Temperatures
+from .heat import pair_temperatures as pair_temperatures
+from .heat import temperature as temperature
 from .heat.heat_limits import conductance as conductance
 from .heat.heat_limits import heat_limit as heat_limit
 from .heat.heat_limits import turning_points as turning_points
 from .heat.heat_limits import uniform_temperature as uniform_temperature
 from .heat.heat_limits import warming as warming
-from .heat.temperature import Temperatures as Temperatures
-from .heat.temperature import pair_temperatures as pair_temperatures
-from .heat.temperature import temperature as temperature
 from .laws.law_netcdf import load_law as load_law
 from .materials.bodies import Bodies as Bodies
 from .materials.bodies import Cover as Cover

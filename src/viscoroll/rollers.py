@@ -526,16 +526,31 @@ class Cylinder(Methods):
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
             if self.coupled is not False:
                 self.pair.refuse_coupled_ratios(law, DUNDURS_LIMIT)
-        return scene_of(
-            self.R,
-            self.m,
-            load=self.load,
-            E_prime=self.E_prime,
-            T_ref=self.T_ref,
-            law=law,
-            mu=self.mu,
-            j=self.j,
-            coupled=self.coupled,
+        return self._scene_of(law)
+
+    def _scene_of(self, law: Any) -> Scene:
+        """Return the scene with a law, whose kappa is R/l0 and whose gamma is P T_ref^2/(m R).
+
+        law: alpha, a float or an array (n,), no int, or a material of a scene (series, bodies,
+            cover or :class:`LawTable`), with times divided by ``T_ref``, which in
+            :class:`.run_rollers.Rollers` may be an array (n,).
+        Raises ParameterError, by the names of the scene's parameters, where these are out of range
+        or overflow, or their shapes do not broadcast; ValueError of numpy where those of R, load
+        and E_prime, or of R, m, load and T_ref, do not.
+        """
+        R, m, load, T, E_prime = (
+            np.asarray(value, np.float64)[()]
+            for value in (self.R, self.m, self.load, self.T_ref, self.E_prime)
+        )
+        # values beyond the range of doubles become 0 or infinite, and are refused with the formula
+        with np.errstate(all="ignore"):
+            kappa = R / contact_length(R, load, E_prime)
+            gamma = load * T**2 / (m * R)
+        check_array("kappa (R divided by the contact length at rest)", kappa, above=0.0)
+        check_array("gamma (load times T_ref^2, divided by m R)", gamma, above=0.0)
+        material = "alpha" if isinstance(law, float | np.ndarray) else "material"
+        return Scene(
+            kappa=kappa, gamma=gamma, mu=self.mu, j=self.j, coupled=self.coupled, **{material: law}
         )
 
     @cached_property
@@ -569,31 +584,3 @@ class Cylinder(Methods):
         if rates is None or np.ndim(self.l0):
             return {}
         return {MEASURED: [rate * self.l0 for rate in rates]}
-
-
-def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, **others: Any) -> Scene:
-    """Return the scene of one cylinder or of many; the arguments are numbers or arrays (n,),
-    unchecked.
-
-    :class:`.run_rollers.Rollers` calls it with an array for ``T_ref``, a unit of time for each
-    cylinder.
-
-    R, m, load, E_prime: radius, m, mass and load per length, kg/m and N/m, and contact modulus, Pa.
-    T_ref: unit of time, s, a number or (n,).
-    law: alpha, a float or an array (n,), no int, or a material of a scene (series, bodies, cover or
-        :class:`LawTable`), with times divided by ``T_ref``.
-    others: mu, j and perhaps coupled of the scene.
-    Returns the :class:`Scene`, whose kappa is R/l0 and whose gamma is P T_ref^2/(m R).
-    Raises ParameterError, by the names of the scene's parameters, where these are out of range or
-    overflow, or their shapes do not broadcast; ValueError of numpy where those of R, load and
-    E_prime, or of R, m, load and T_ref, do not.
-    """
-    R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
-    # values beyond the range of doubles become 0 or infinite, and are refused with the formula
-    with np.errstate(all="ignore"):
-        kappa = R / contact_length(R, load, E_prime)
-        gamma = load * T**2 / (m * R)
-    check_array("kappa (R divided by the contact length at rest)", kappa, above=0.0)
-    check_array("gamma (load times T_ref^2, divided by m R)", gamma, above=0.0)
-    material = "alpha" if isinstance(law, float | np.ndarray) else "material"
-    return Scene(kappa=kappa, gamma=gamma, **others, **{material: law})

@@ -199,7 +199,11 @@ def points(
         drawn = _stream(seed, block).random((dimensions, stop - start))
         if design == "latin":
             index = np.arange(start, stop, dtype=np.uint64)
-            strata = [permuted(index, n, key) for key in _keys(seed, dimensions)]
+            # from a stream that no block has
+            keys = _stream(seed, 2**64 - 1).integers(
+                0, 2**64, (dimensions, _ROUNDS), dtype=np.uint64
+            )
+            strata = [permuted(index, n, key) for key in keys]
             # one point in each of n strata of each coordinate, at random within it
             drawn = (np.array(strata) + drawn) / n
     return np.clip(drawn, SMALLEST, LARGEST)
@@ -213,13 +217,6 @@ def _stream(seed: int, number: int) -> np.random.Generator:
     permutations.
     """
     return np.random.Generator(np.random.Philox(key=np.array([seed, number], np.uint64)))
-
-
-def _keys(seed: int, dimensions: int) -> Words:
-    """Return the keys of the permutations, (dimensions, rounds), from a stream of the ``seed`` that
-    no block has.
-    """
-    return _stream(seed, 2**64 - 1).integers(0, 2**64, (dimensions, _ROUNDS), dtype=np.uint64)
 
 
 def permuted(index: Words, n: int, key: Words) -> Words:

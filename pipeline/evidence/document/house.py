@@ -15,7 +15,7 @@ import msgspec
 from msgspec import inspect as schema
 
 import viscoroll as vr
-from viscoroll.cli.program import parser
+from viscoroll.cli import parser
 from viscoroll.materials.material_toml import MaterialSection
 from viscoroll.presets import CylinderSection, SceneSection
 from viscoroll.runs.run_rollers import RUN_SECTIONS

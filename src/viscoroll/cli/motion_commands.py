@@ -568,8 +568,7 @@ def _figure_of_netcdf(path: str) -> Any:
         raise
     except (AttributeError, KeyError, ValueError) as error:
         raise vr.FileError(
-            path,
-            "is not a result of viscoroll, or lacks a part of one: write the result again",
+            path, "is not a result of viscoroll, or lacks a part of one: write the result again"
         ) from error
 
 

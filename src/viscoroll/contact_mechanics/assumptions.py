@@ -366,7 +366,7 @@ def assess_inertia(
     )
 
 
-def assess_coupling(long: float, instant: float, *, like: bool, solved: bool = False) -> Assumption:
+def assess_coupling(long: float, instant: float, *, like: bool, solved: bool) -> Assumption:
     """Compare Dundurs' constant of two bodies with :data:`DUNDURS_LIMIT`.
 
     long, instant: the constant by the long-time and by the instantaneous moduli, dimensionless, any

@@ -465,8 +465,8 @@ def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
     band: (lowest, highest) |V|, in the same unit, both inside; a range without 0 leaves every band
         whose lowest is above its highest.
     """
-    (low, high) = extent
-    (lowest, highest) = band
+    low, high = extent
+    lowest, highest = band
     return high > highest or -low > highest or 0.0 < low < lowest or 0.0 < -high < lowest
 
 

@@ -219,13 +219,7 @@ def branches(law: LawTable, gain: float) -> Branches:
     u = np.union1d(u, flat)
     is_flat = np.isin(u, flat)
     ends = [0, *np.flatnonzero(is_flat).tolist(), u.size - 1]
-    return Branches(
-        u=u,
-        resistance=_curve(law, gain, u)[0],
-        extremum=is_flat,
-        gain=gain,
-        ends=ends,
-    )
+    return Branches(u=u, resistance=_curve(law, gain, u)[0], extremum=is_flat, gain=gain, ends=ends)
 
 
 def speed_nodes(law: LawTable) -> Floats:

@@ -486,7 +486,7 @@ def steady(
     plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
     level = roller
-    (roller, scene, scale) = resolve_model(roller, "steady", slope=slope)
+    roller, scene, scale = resolve_model(roller, "steady", slope=slope)
     if type(scene.alpha) is not float:  # a float, the common case, is no array
         refuse_arrays(level, scene, ("alpha",), slope=slope)
     force = make_dimensionless("force", plain["force"], scale)

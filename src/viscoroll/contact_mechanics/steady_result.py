@@ -127,7 +127,7 @@ class Diagnosis(NamedTuple):
         mu = loads.mu[n]
         kappa = loads.kappa[n]
         total = at_rest * load
-        (own, V, Q) = self.states
+        own, V, Q = self.states
         if (own == n).any():  # the state that asks for the least friction
             V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
             at = f"at V = {V * speed:.6g}{of_speed}"
@@ -292,12 +292,7 @@ class Steady(Equilibria):
     _ranges = ("V",)
 
     def __init__(
-        self,
-        loads: Loads,
-        states: States,
-        reasons: Diagnosis,
-        scale: Scale,
-        labels: Labels | None,
+        self, loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None
     ) -> None:
         """Pack steady states, one after another, into arrays over loads and equilibria, in the
         units of the roller.

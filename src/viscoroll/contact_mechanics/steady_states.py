@@ -27,14 +27,7 @@ from ..core import Floats, Integers, run_blocks
 from ..laws import LawTable
 from .contact_table import Contacts
 from .rolling_resistance import branches
-from .steady_loads import (
-    Gains,
-    Loads,
-    balance,
-    creep_beyond_free,
-    moments_of_losses,
-    shear_at,
-)
+from .steady_loads import Gains, Loads, balance, creep_beyond_free, moments_of_losses, shear_at
 
 #: loads of one block of work: some milliseconds
 _BLOCK = 1 << 12
@@ -115,12 +108,7 @@ class States(NamedTuple):
 
     @classmethod
     def of(
-        cls,
-        loads: Loads,
-        load: Integers,
-        sign: Floats,
-        answers: Floats,
-        free: Floats | None = None,
+        cls, loads: Loads, load: Integers, sign: Floats, answers: Floats, free: Floats | None = None
     ) -> States:
         """Make the states from values of the law in a frame where V > 0: give V, Q and the moments
         the signs of the motion, and add omega and the eigenvalues.
@@ -138,12 +126,7 @@ class States(NamedTuple):
         rows[Field.FREE_HALF_SPACE :] = (
             answers[[Field.M_HALF_SPACE, Field.M_CYLINDER]] if free is None else free
         )
-        moments = [
-            Field.M_HALF_SPACE,
-            Field.M_CYLINDER,
-            Field.FREE_HALF_SPACE,
-            Field.FREE_CYLINDER,
-        ]
+        moments = [Field.M_HALF_SPACE, Field.M_CYLINDER, Field.FREE_HALF_SPACE, Field.FREE_CYLINDER]
         rows[[Field.V, Field.Q, *moments]] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
         # of the frame where V > 0: a mirror image has the same eigenvalues
@@ -405,7 +388,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     part = np.abs(Q) / mu
     exists = part < 1.0
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
-    (star, lam, rise) = free[2:]
+    star, lam, rise = free[2:]
     faster = V / root
     rolling = contacts.free_creep(faster)
     less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")

@@ -31,14 +31,7 @@ from ..core import (
 )
 from ..laws import CoverModes, half_line_rule, pressure, series_record
 from ..materials import layer_excess, local_coupling, total_series
-from .contact_table import (
-    ACCURACY,
-    DEPTH,
-    FREE_CREEP,
-    complete,
-    evaluate_contact,
-    refuse_overflow,
-)
+from .contact_table import ACCURACY, DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
 from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model

@@ -415,7 +415,7 @@ def caller_level() -> int:
         # with the point "viscoroll" itself and its modules fit, but not "viscoroll_tools"
         if name != "dataclasses" and f"{name}."[:10] != "viscoroll.":
             break
-        level = level + 1
+        level += 1
         frame = frame.f_back
     return level
 

@@ -54,8 +54,7 @@ def as_path(path: Any) -> Path:
     """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise FileError(
-            describe_value(path),
-            "is not a path: must be a text without null characters, or a Path",
+            describe_value(path), "is not a path: must be a text without null characters, or a Path"
         )
     return Path(path)
 

@@ -34,8 +34,8 @@ from ..core import (
     shape_error,
     strip_labels,
 )
+from . import HOTTEST, zeros_at_speed
 from .heated_bodies import NODES, check_ambient, heat_states, heated_body, shift_curve
-from .temperature import HOTTEST, zeros_at_speed
 
 # --- Limits ---
 

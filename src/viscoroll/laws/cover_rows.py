@@ -355,26 +355,26 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     return CoverRows(e0, table, powers[_BESIDE], limits)
 
 
-def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
+def solve_at_speed(cover: Cover, u: float, *, orders: int = LEAST_TERMS) -> Floats:
     """Solve one state of a cover, without rows; the rows are compared with it in tests.
 
     cover: one :class:`.bodies.Cover`.
     u: kappa |V|, dimensionless, > 0.
-    orders: number of terms of the pressure; None: as many as rows are made with
-    (:func:`.cover_solve.solve`).
+    orders: number of terms of the pressure (:func:`.cover_solve.solve`), at most 100; by default
+    the least with which rows are made.
     Returns the quantities of a node (module), dimensionless, (11,).
     Raises ParameterError where no contact length that carries the load is found; a contact that is
     longer than rows allow, half of it beyond six thicknesses, is not refused.
     """
-    return _solve_node(CoverModes(cover), u, orders=orders or LEAST_TERMS)[0]
+    return _solve_node(CoverModes(cover), u, orders)[0]
 
 
 def _solve_node(
     modes: CoverModes,
     u: float,
+    orders: int,
     start: float | None = None,
     slope: float = 2.0,
-    orders: int | None = None,
     stiffness: float = 1.0,
 ) -> tuple[Floats, float, float]:
     """Solve for the half contact length that carries the load at one speed, by the secant method.
@@ -384,10 +384,10 @@ def _solve_node(
     extrapolated by the last secant step; what shear does is that of the last solve.
     modes: :class:`CoverModes` of the bodies.
     u: kappa |V|, dimensionless, > 0.
+    orders: as in :func:`solve_at_speed`.
     start: first approximation of ln z; None: that of a half-space of a stiffness between slow and
         fast, shortened for a thin cover, from which one is found first.
     slope: first approximation of d ln H/d ln z, > 0; 2 is that of a half-space.
-    orders: as in :func:`solve_at_speed`.
     stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the
         ``modes`` of elastic bodies; 1: the modes have their own stiffness.
     Returns (the quantities of a node, (11,), dimensionless; ln z after the last secant step; d ln
@@ -439,7 +439,7 @@ def _solve_node(
 
 
 def _find_length(
-    modes: CoverModes, u: float, y: float, slope: float, orders: int | None, goal: float
+    modes: CoverModes, u: float, y: float, slope: float, orders: int, goal: float
 ) -> tuple[list[float], list[float], list[CoverState]]:
     """Find the half contact length that carries a load, by the secant method in ln z.
 
@@ -447,7 +447,7 @@ def _find_length(
     u: kappa |V|, dimensionless, > 0.
     y: first ln z.
     slope: first approximation of d ln H/d ln z, > 0.
-    orders: number of terms of the pressure; None: the default of the solve.
+    orders: number of terms of the pressure.
     goal: ln H of the load.
     Returns (ln z of each solve, then that after the last step; ln H - goal of each solve; their
     states), at least two solves.
@@ -495,7 +495,7 @@ def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:
         start, slope = (
             (_EXTRAPOLATION @ known[n - count : n]).tolist() if n >= count else (None, 2.0)
         )
-        values[:, n], *known[n] = _solve_node(modes, speed, start=start, slope=slope, orders=orders)
+        values[:, n], *known[n] = _solve_node(modes, speed, orders, start, slope)
     return values
 
 
@@ -516,7 +516,7 @@ def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     Returns the quantities of a node, (11,), dimensionless, epsilon and M/V exactly 0.
     Raises ParameterError where no contact length that carries the load is found.
     """
-    values = _solve_node(modes.elastic(share), 0.5, orders=LEAST_TERMS, stiffness=stiffness)[0]
+    values = _solve_node(modes.elastic(share), 0.5, LEAST_TERMS, stiffness=stiffness)[0]
     # the solve leaves rounding in them
     values[_EPSILON : _MOMENTS.stop] = 0.0
     return values
@@ -549,7 +549,7 @@ def _fit_fast_rows(
         y, values, limits=limits, wanted=x_inverse, degrees=_DEGREES, log_terms=log_terms
     )
     slopes[_MOMENTS] = (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
-    fitted[_MOMENTS] = fitted[_MOMENTS] * x_inverse
+    fitted[_MOMENTS] *= x_inverse
     # coefficients of y = begin/u become those of 1/u; M/V was divided by y, and its own are of
     # 1/u^2
     first *= begin

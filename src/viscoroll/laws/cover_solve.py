@@ -205,18 +205,6 @@ class CoverModes:
         return CoverModes(self.cover.elastic(share))
 
 
-def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
-    """Return the complex compliance of a series for exp(i k Y), Y being the position along the
-    rolling direction.
-
-    instant: instantaneous compliance, in any unit.
-    J, b: strengths, in that unit, and rates of creep, in 1/T_ref, (modes,).
-    k: wave numbers in units of 1/(V T_ref), (n,).
-    Returns complex numbers (n,) in the unit of ``instant``; without modes they all are ``instant``.
-    """
-    return instant + (J * b / (b - 1j * k[:, None])).sum(axis=1)
-
-
 def half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
     """Return nodes and weights of an integral over [0, inf), by the trapezoidal rule in s with
     scale ln(1 + e^s) as variable.
@@ -413,7 +401,14 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     v = half * modes.wave
     A = bessel(v, N)
     k = v / z
-    compliance = np.array([_compliance(body.instant, body.J, body.b, k) for body in modes.bodies])
+    # complex compliance of each body for exp(i k Y), Y being the position along the direction of
+    # rolling
+    compliance = np.array(
+        [
+            body.instant + (body.J * body.b / (body.b - 1j * k[:, None])).sum(axis=1)
+            for body in modes.bodies
+        ]
+    )
     own = (modes.mine * compliance).sum(axis=0)
     part = own / compliance.sum(axis=0)
     exponentials = evaluate_exponentials(modes, z, N)

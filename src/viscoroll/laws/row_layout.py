@@ -199,7 +199,7 @@ def allocate_rows(count: int) -> tuple[Floats, Integers]:
 
 
 def pack_record(
-    table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None = None
+    table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None
 ) -> Any:
     """Return the record of a law of steady rolling that kernels read, with all its rows computed.
 
@@ -349,7 +349,7 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     from_top[-1] = 0.0
     # its last but one entry, up to the end of the last row, belongs to no origin and is deleted
     # below
-    from_rest[:-2] = from_rest[:-2] - to_begin
+    from_rest[:-2] -= to_begin
     pairs = np.stack([N, integral], axis=1).reshape(len(N), 2, -1, 2).swapaxes(1, 2)
     return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
 
@@ -462,7 +462,7 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     terms = np.concatenate(
         [pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), terms[:, :, 4:]], axis=2
     )
-    terms = _grouped_terms(terms, GROUP)
+    terms = _grouped_terms(terms)
     groups = np.moveaxis(terms.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE), 0, 2)
     groups = np.moveaxis(groups, (1, 3, 2), (0, 1, 2))[
         :, :, ::-1
@@ -486,22 +486,21 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     return AxisRows(lock_array(align_vector(np.concatenate(numbers))), lock_array(starts), rows)
 
 
-def _grouped_terms(terms: Floats, size: int) -> Floats:
+def _grouped_terms(terms: Floats) -> Floats:
     """Return sums of Chebyshev polynomials T_j(s) as sums of T_4g(s) times cubic polynomials in s.
 
-    Kernels evaluate these faster.
+    Kernels evaluate these faster.  A group has four terms.
 
     terms: coefficients of T_0 to T_15, (16, ...); not changed.
-    size: terms of a group; it must be 4, the only size for which the formulas hold.
     Returns a new array of the same shape: the coefficient of T_4g s^i at index 4 g + i.
     """
     terms = terms.copy()
     # from the highest group down, as each changes the one below it
-    for start in range(len(terms) - size, 0, -size):
-        for i in range(1, size):  # T_(4g+i) = 2 T_4g T_i - T_(4g-i)
+    for start in range(len(terms) - 4, 0, -4):
+        for i in range(1, 4):  # T_(4g+i) = 2 T_4g T_i - T_(4g-i)
             terms[start - i] -= terms[start + i]
             terms[start + i] *= 2.0
-    groups = terms.reshape(-1, size, *terms.shape[1:])
+    groups = terms.reshape(-1, 4, *terms.shape[1:])
     groups[:, 0] -= groups[:, 2]  # T_2 = 2 s^2 - 1, T_3 = 4 s^3 - 3 s
     groups[:, 1] -= 3.0 * groups[:, 3]
     groups[:, 2] *= 2.0

@@ -536,7 +536,7 @@ def _long_time_shear(
         found = f"is given by {' and '.join(given) or 'no argument'}"
         allowed = "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0"
         raise described_error("the long-time shear modulus", found, allowed)
-    (name, value) = given.popitem()
+    name, value = given.popitem()
     named = {"G0": "long-time G0 - sum of G", "beta = 0": "long-time G (of zero beta)"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 

@@ -306,8 +306,10 @@ class Pair:
         law: of the bodies; :class:`Bodies` have no Poisson's ratios where one of them is an array.
         limit: Dundurs' constant up to which bodies count as uncoupled, dimensionless.
         """
-        if type(law) is Bodies and law.poisson is None and self.most_coupled > limit:
-            raise several_tables_error("nu", "one number")
+        if type(law) is Bodies and law.poisson is None:
+            # in size, of long times or at once, of any of many pairs
+            if max(np.abs(each).max() for each in self.dundurs) > limit:
+                raise several_tables_error("nu", "one number")
 
     @cached_property
     def dundurs(self) -> tuple[Any, Any]:
@@ -330,13 +332,6 @@ class Pair:
             of_pairs(*one, *other, self.plane).tolist() for one, other in (late, early)
         )
         return long, instant
-
-    @property
-    def most_coupled(self) -> float:
-        """The largest Dundurs' constant in size, of long times or at once, of any of many pairs, a
-        float >= 0, dimensionless.
-        """
-        return max(float(np.abs(each).max()) for each in self.dundurs)
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:

@@ -137,7 +137,7 @@ class Likelihood:
         """
         self.problem = problem
         self.best = found[0]
-        (u, _) = found[0]
+        u, _ = found[0]
         J = problem.weighted(u)[1]
         noise = problem.noise(u)
         repeats = np.ones(problem.points)
@@ -583,7 +583,7 @@ class ProfileWalk:
         follows = next((i for i in together if i not in bounds), together[0])
         if not (at := [i for i in bounds if i in problem.active and i != follows]):
             return []
-        (r, J) = problem.weighted(u)
+        r, J = problem.weighted(u)
         others = [i for i in problem.active if i not in (*at, follows)]
         # slopes while the combination stays: ``follows`` changes by -powers/powers[follows]; then
         # the part of the slope of each bound that the free unknowns cannot make, along which chi2

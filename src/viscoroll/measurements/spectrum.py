@@ -571,7 +571,7 @@ def _pulled(
     sign : 1.0 for the largest, -1.0 for the smallest value.
     allowed : largest sum of squares, dimensionless.
     """
-    (low, high) = _WEIGHTS
+    low, high = _WEIGHTS
     found = best
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

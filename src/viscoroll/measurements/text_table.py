@@ -118,8 +118,8 @@ def read_table(
     path: str | PathLike[str],
     is_heading_line: Callable[[list[str]], bool],
     *,
-    decimal: str | None = None,
-    encoding: str | None = None,
+    decimal: str | None,
+    encoding: str | None,
     is_title: Callable[[str], bool] = lambda text: False,
     footers: bool = True,
 ) -> Table:

@@ -13,14 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import (
-    ParameterError,
-    check_array,
-    check_names,
-    check_number,
-    describe_value,
-    si_unit,
-)
+from ..core import ParameterError, check_array, check_names, check_number, describe_value, si_unit
 from ..materials import Material, Prony
 from ..rollers import Cylinder
 from .measurement_records import OF_RECORDS, Record

@@ -236,7 +236,7 @@ class DrivenStart(NamedTuple):
 
 
 def prepare_drive(
-    drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None = None
+    drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None
 ) -> DrivenStart:
     """Check a drive and the start speeds, and fit its callables.
 

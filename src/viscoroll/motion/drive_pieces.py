@@ -29,14 +29,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 
-from ..core import (
-    Floats,
-    NDArray,
-    Schedule,
-    check_array,
-    require_time_argument,
-    shape_error,
-)
+from ..core import Floats, NDArray, Schedule, check_array, require_time_argument, shape_error
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 from .motion_arguments import dimensionless_error
 
@@ -214,12 +207,7 @@ class _Sampled:
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
         piece = Piece(
-            start=start,
-            stop=stop,
-            terms=np.zeros(TERMS),
-            largest=0.0,
-            error=largest,
-            so_far=so_far,
+            start=start, stop=stop, terms=np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far
         )
         if largest <= zero:
             return piece, None
@@ -451,8 +439,7 @@ def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
     """Return the product of two matrices; its bits do not depend on numpy's library of linear
     algebra.
     """
-    product = np.einsum("ij,jk->ik", A, B)
-    return product
+    return np.einsum("ij,jk->ik", A, B)
 
 
 # --- Numbers, schedules and fits as pieces ---
@@ -491,13 +478,7 @@ class Piecewise(NamedTuple):
 
 
 def piecewise(
-    name: str,
-    function: Any,
-    end: float,
-    rtol: float,
-    *,
-    low: float = -np.inf,
-    resolve: float | None = None,
+    name: str, function: Any, end: float, rtol: float, *, low: float, resolve: float | None
 ) -> Piecewise:
     """Return a function of time that acts on motions as piecewise polynomials, checked.
 

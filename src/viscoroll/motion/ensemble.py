@@ -8,15 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import (
-    FASTEST,
-    Roller,
-    Validity,
-    refuse_beyond,
-    scale_of,
-    warn_of_speeds,
-    warn_of_start,
-)
+from ..contact_mechanics import FASTEST, Roller, Validity, refuse_beyond, scale_of, warn_of_speeds
 from ..contact_mechanics.validity import validity
 from ..core import (
     Booleans,
@@ -450,14 +442,7 @@ def ensemble(
     )
     problem = make_problem(roller, start, drive=drive, end=times[-1], options=options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
-    warn_of_start(
-        problem.roller,
-        problem.scene,
-        start=start,
-        V0=problem.V0,
-        omega0=problem.omega0,
-        driven=problem.driven,
-    )
+    problem.warn_of_start(start)
     scale = problem.roller.scale
     scene = problem.scene
     law: Any = scene.rolling_law

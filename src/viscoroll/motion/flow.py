@@ -24,15 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..contact_mechanics import Parameters
-from ..core import (
-    Floats,
-    Integers,
-    NDArray,
-    broadcast_vector,
-    load_kept,
-    run_blocks,
-    save_kept,
-)
+from ..core import Floats, Integers, NDArray, broadcast_vector, load_kept, run_blocks, save_kept
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, FlowTables
 from ..kernels.numerics.cache_folder import cache_root
@@ -40,12 +32,7 @@ from ..kernels.records import Motions
 from ..laws import interleave_pairs
 from ..laws.law_table import law_table
 from ..materials import Prony
-from .flow_tables import (
-    NODES,
-    SPEEDS,
-    fill_layers,
-    fill_manifold,
-)
+from .flow_tables import NODES, SPEEDS, fill_layers, fill_manifold
 from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integrate_motions
 
 # --- A flow map, and its file beside the compiled kernels ---

@@ -330,11 +330,7 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
         inside = np.flatnonzero((nodes <= start) & (nodes > end))
         if inside.size:
             (states[0, inside],), (states[1, inside],) = problem.integrate(
-                V,
-                delta,
-                gamma=gamma,
-                t=(start - nodes[inside]) / rate,
-                reason=FULL_SLIP_RETURNS,
+                V, delta, gamma=gamma, t=(start - nodes[inside]) / rate, reason=FULL_SLIP_RETURNS
             )
     V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
     return rows, V, delta

@@ -19,6 +19,7 @@ from ..contact_mechanics import (
     refuse_beyond,
     refuse_cover,
     resolve_model,
+    warn_of_start,
 )
 from ..contact_mechanics.contact import contact
 from ..core import (
@@ -44,15 +45,7 @@ from .drive_functions import (
     prepare_drive,
     refuse_rest,
 )
-from .motion_arguments import (
-    LOSSES,
-    ROWS,
-    STATES,
-    Drive,
-    controls,
-    require_single,
-    with_scales,
-)
+from .motion_arguments import LOSSES, ROWS, STATES, Drive, controls, require_single, with_scales
 
 #: Indices of all rows of the kernel's output.
 _ALL_ROWS = np.arange(len(ROWS))
@@ -121,6 +114,12 @@ class MotionProblem(NamedTuple):
     unsteady: bool
     driven: bool
 
+    def warn_of_start(self, start: tuple[Any, Any]) -> None:
+        """Warn of motions for which the model fails grossly, judged by their ``start``, V and omega
+        as the caller gave them; None for a prescribed one.
+        """
+        warn_of_start(self.roller, self.scene, start, self.V0, self.omega0, self.driven)
+
 
 def make_problem(
     roller: Roller,
@@ -154,7 +153,7 @@ def make_problem(
     if single:
         require_single(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
     drive = drive.without_zeros() if acts else drive
-    (rtol, rest, max_steps, resolve, unsteady, rested) = options
+    rtol, rest, max_steps, resolve, unsteady, rested = options
     roller, scene, scale = resolve_model(
         roller, "roll" if single else "ensemble", moves=True, slope=drive.slope
     )

@@ -10,14 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..contact_mechanics import (
-    Roller,
-    Validity,
-    assess_heat,
-    scale_of,
-    warn_of_speeds,
-    warn_of_start,
-)
+from ..contact_mechanics import Roller, Validity, assess_heat, scale_of, warn_of_speeds
 from ..contact_mechanics.contact import contact
 from ..contact_mechanics.validity import validity
 from ..core import (
@@ -581,14 +574,7 @@ def roll(
     problem = make_problem(
         roller, (V0, omega0), drive=drive, end=times[-1], options=options, single=True
     )
-    warn_of_start(
-        problem.roller,
-        problem.scene,
-        start=(V0, omega0),
-        V0=problem.V0,
-        omega0=problem.omega0,
-        driven=problem.driven,
-    )
+    problem.warn_of_start((V0, omega0))
     motion = integrate_motion(problem, times)
     warn_of_speeds(problem.roller, V0, motion.V)
     if not motion.success:

@@ -187,9 +187,7 @@ def make_folder(path: Path) -> None:
 _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
-def motion_files(
-    motions: Dataset, count: int, block: int, number: int | None = None
-) -> dict[str, bytes]:
+def motion_files(motions: Dataset, count: int, block: int, number: int | None) -> dict[str, bytes]:
     """Return files of the group of all motions, as zarr encodes them in memory; nothing is written
     to disk.
 

@@ -22,7 +22,7 @@ from ..materials import (
     vertical_factor,
 )
 from ..presets import make_roller
-from ..rollers import Cylinder, Scene, scene_of
+from ..rollers import Cylinder, Scene
 
 # --- Sections of a run file beside the roller's and [run] ---
 
@@ -133,16 +133,7 @@ class Rollers(Cylinder):
         if not self.seconds:
             return super()._scene
         T = self.T_ref
-        scene = scene_of(
-            self.R,
-            self.m,
-            load=self.load,
-            E_prime=self.E_prime,
-            T_ref=T,
-            law=T / self.T_sigma,
-            mu=self.mu,
-            j=self.j,
-        )
+        scene = self._scene_of(T / self.T_sigma)
         # gamma = P T_ref^2/(m R) of T_ref = T: over T it is 1/s, as the class counts time
         return scene.replace(gamma=scene.gamma / T)
 
@@ -204,7 +195,7 @@ def _warm_bodies(
     Returns the bodies, of which those that relax are at the coldest equilibrium: a
     :class:`Material` of one temperature, a :class:`Solid` of several.
     Raises ParameterError for a material that is uncertain itself, and as
-    :func:`.temperature.temperature`.
+    :func:`viscoroll.temperature`.
     """
     heat = content["heat"]
     speed = heat.get("speed", content["start"].get("V0"))

@@ -23,21 +23,8 @@ import numpy as np
 
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
-from ..core import (
-    FileError,
-    Floats,
-    NDArray,
-    as_file_error,
-    shape_error,
-    write_bytes,
-)
-from ..motion import (
-    Ensemble,
-    Summary,
-    merge_summaries,
-    summarise,
-    summary_dataset,
-)
+from ..core import FileError, Floats, NDArray, as_file_error, shape_error, write_bytes
+from ..motion import Ensemble, Summary, merge_summaries, summarise, summary_dataset
 from ..motion.ensemble import ensemble
 from ..sampling import points
 from . import run_records
