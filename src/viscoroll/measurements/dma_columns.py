@@ -1,7 +1,7 @@
 """Columns of tests of materials: which columns of a table are frequency, moduli and temperature,
 and their numbers; and a column by the name that the user gives, in a unit (:func:`column_in_unit`).
 
-Names of columns in five languages, and the quantities that they mean, are read from headings.toml.
+Names of columns in seven languages, and the quantities that they mean, are read from headings.toml.
 """
 
 import math
@@ -28,7 +28,7 @@ from ..materials import ABSOLUTE_ZERO
 from .text_cells import MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
 from .text_table import Table, find_column, missing_column
 
-# --- Names of the columns of tests of materials in five languages ---
+# --- Names of the columns of tests of materials in seven languages ---
 
 #: columns beside moduli without E or G that only a test in shear has
 OF_SHEAR = re.compile(

@@ -485,8 +485,8 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         )
         yield (
             "",
-            f"among them {symbol} changes by factors of {low:.3g} to {high:.3g}, alpha by factors "
-            f"of {least:.3g} to {most:.3g}",
+            f"in those of least and most M, {symbol} changes by factors of {low:.3g} to {high:.3g},"
+            f" alpha by factors of {least:.3g} to {most:.3g}",
         )
     else:
         yield (
