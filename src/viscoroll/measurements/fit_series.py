@@ -284,9 +284,10 @@ def fit_relaxation(
         give no more modes a strength > 0.  None: as few as ``misfit`` needs or, where no grid
         reaches it, as few as come within 5 % of the least misfit.
     misfit : root mean square of the relative errors that E(t) may have, dimensionless, > 0 (0.003
-        is 0.3 %).  Rolling resistance is made of E'', which follows from the slope of E(t).  For
-        typical slopes an error of 1 % in E(t) means 10 to 30 % in E'', one of 0.3 % means about 5
-        %.  With ``modes`` it decides ``reached`` of the result alone.
+        is 0.3 %).  Rolling resistance is made of E'', which follows from the slope of E(t).  If
+        E(t) falls by 10 to 20 % per decade of time, an error of 1 % in E(t) that changes its sign
+        within half a decade means 10 to 30 % in E'', one of 0.3 % means 3 to 9 %.  With ``modes``
+        it decides ``reached`` of the result alone.
     temperature : temperature of the test, degrees Celsius, or None where it is not known; it stays
         with the material.
     mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.

@@ -556,7 +556,7 @@ def _kramers_kronig(median: float, symbol: str) -> str:
         text = f"is above 0, but {symbol}' does not rise with the frequency (Kramers-Kronig)"
     return (
         text
-        + ": storage and loss modulus are inconsistent, or relaxation times are far apart"
+        + ": the moduli are inconsistent or rise steeply, or relaxation times are far apart"
         * (not _CONSISTENT[0] <= median <= _CONSISTENT[1])
     )
 

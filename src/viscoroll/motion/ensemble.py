@@ -360,9 +360,9 @@ def ensemble(
         number: the final state only.
     force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`;
         numbers may be arrays (n,), times and values of a :class:`Schedule` of shape (n, k).
-    method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
-        error of ``rtol`` at an alpha each.  "flow": look the
-        motions up in the flow map of their one scene, which is built if it is not on disk
+    method : "integrate": each motion as :func:`roll` would, bit for bit if all have one
+        material (covers also one load, radius and slope), else to the error of ``rtol``.  "flow":
+        look the motions up in the flow map of their one scene, which is built if it is not on disk
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map is used only
         where its stated error is at most ``rtol``, and only for the motions that it contains;
         all others are integrated, with "flow" too.  The result says which, and the map's error.

@@ -94,7 +94,8 @@ class RunSection(msgspec.Struct, frozen=True):
     each motion; "auto" takes "flow" for at least 4096 motions where these conditions hold.
     rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
     rest : speed, dimensionless; with [cylinder] in m/s.  A motion ends at rest where |V| and
-    R |omega| are below it and nothing drives any more.  Default: no such end.
+    R |omega| are below it and no force, torque, slope, brake, drag or prescribed speed acts any
+    more.  Default: no such end.
     unsteady : whether the moment contains N dV/dt, the effect of slow changes of the speed (N is
     the added mass).  It is allowed for half-spaces of one material only.
     rested : whether the cylinder stood still for long before the start; a number is the time for
