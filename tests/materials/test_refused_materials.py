@@ -229,8 +229,9 @@ REFUSED = [
         {
             "columns = 'abc' (a text): must be a dict, as {'frequency'": {"columns": "abc"},
             "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
-            "units | must be (unit of frequency, of moduli)": [
-                {"units": units} for units in (("MPa", "Hz"), "Hz", ("Hz", 1.0))
+            "units | must be (unit of frequency, of moduli)": [{"units": "Hz"}],
+            "units has | for | must be a unit of the dimension of": [
+                {"units": units} for units in (("MPa", "Hz"), ("Hz", 1.0))
             ],
         },
     ),
@@ -381,7 +382,7 @@ REFUSED = [
                 "reference": 30.0,
             },
             "shift = 1 at 0 °C and 10 at 20 °C | shift factors a_T (time divided by time at the "
-            "reference), which decrease with temperature, in the order of the curves": {
+            "reference), which decrease with temperature (a list has the order of the curves)": {
                 "temperature": np.repeat([20.0, 0.0], 10),
                 "shift": [10.0, 1.0],
             },

@@ -64,7 +64,7 @@ def show(arguments: Namespace) -> None:
                 "T_i [s]": series.T * T,
             }
             mean = f"T_mean = {series.T_mean * T:.6g} s"
-            print(f"Low speeds, identical materials: M/P = V T_mean with V in m/s, {mean}\n")
+            print(f"Slow rolling on the same material: moment M / load P = V T_mean in m, {mean}\n")
             print(
                 pd.DataFrame(columns).to_string(index=False, float_format="{:.10g}".format),
                 end="\n\n",

@@ -322,7 +322,8 @@ def _start_faults(
     ):
         faults.append(
             "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more "
-            "than a tenth of the distance"
+            "than a tenth of the distance to rest (unsteady=True reduces the error; it needs "
+            "half-spaces of one material)"
         )
     return faults
 

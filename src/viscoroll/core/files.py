@@ -239,7 +239,7 @@ def read_sealed(path: FilePath, max_bytes: int, kind: str, remedy: str) -> bytes
         content = file.read_bytes()
     if content.startswith(b"CDF") and kind != "law or grid":
         problem = "is netCDF-3, which viscoroll writes for other programs and does not read"
-        raise FileError(path, f"{problem}: give a {kind} that was written with the suffix .nc")
+        raise FileError(path, f"{problem}: write it as netCDF-4 (.nc); it must be a {kind}")
     if seal_matches(content) is False:
         raise FileError(
             path, f"is damaged: its bytes differ from the checksum at their end; {remedy}"

@@ -246,7 +246,7 @@ CYCLES = re.compile(
     r"(?i)hz|hertz|count|[cr]p[ms]|rad|rev|cyc|circ|turn|osc|giri|tours|\b(?:[ucr]|tr|umdr)/|upm|u\s*min|deg|gon|arc|°"
 )
 #: Remark on an angular velocity in a unit that is none of these, as 1/min.
-TURNS = ", which may be of turns (rpm) or of radians (rad/s)"
+TURNS = ", which may be of turns (write rpm or rev/s) or of radians (write rad/s)"
 
 
 @lru_cache(maxsize=1)

@@ -111,10 +111,15 @@ def _read_model(name: str, text: str, *states: str) -> Model:
 #: Name of a model -> the model.
 MODELS = {
     "Roller": _read_model(
-        "Roller", "A viscoelastic cylinder that rolls on a half-space", "v", "slip", "x"
+        "Roller",
+        "A cylinder that rolls on a flat base, one or both of them viscoelastic",
+        "v",
+        "slip",
+        "x",
     ),
     "ContactElement": _read_model(
-        "ContactElement", "Force element: a viscoelastic cylinder on a half-space"
+        "ContactElement",
+        "Force element: a cylinder on a flat base, one or both of them viscoelastic",
     ),
 }
 #: Unit with a name of its own -> the same in base units, for :func:`.scale.dimension_powers`.

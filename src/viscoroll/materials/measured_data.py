@@ -593,8 +593,8 @@ class Measured:
         """Return band, misfit, accuracy of M and source in one line."""
         source = f" ({self.source})" if self.source else ""
         errors = [100.0 * error for _, error in self.M_error]
-        accuracy = f", accuracy of M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
+        M = f", accuracy of moment M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
         return (
             f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %"
-            f"{accuracy}{source}"
+            f"{M}{source}"
         )

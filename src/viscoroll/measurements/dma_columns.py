@@ -476,7 +476,7 @@ def conversion_of_column(
     if wanted == "rad s-1" and not CYCLES.search(unit):
         if any(each.name == "rotational speed" for each in meanings(column)):
             given = "numbers without a unit" if unit in NO_UNIT else unit
-            raise ParameterError("unit", given + TURNS, f"a unit of the dimension of {wanted}")
+            raise ParameterError("unit", given + TURNS, "one of these, as the unit of the column")
     if unit in NO_UNIT and wanted not in ("", "1"):
         warn_of_model(f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}")
     return found

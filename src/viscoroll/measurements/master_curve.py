@@ -385,7 +385,8 @@ def master_curve(
             f"{factor[0]:.3g} at {temperatures[0]:g} °C and {factor[-1]:.3g} at "
             f"{temperatures[-1]:g} °C",
             "shift factors a_T (time divided by time at the reference), which decrease with "
-            f"temperature, in the order of the curves; check those that rise {', '.join(rises)}",
+            "temperature (a list has the order of the curves): check the curves where they rise, "
+            f"{', '.join(rises)}",
         )
     if rises:
         warn_of_model(

@@ -294,7 +294,9 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
         try:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
-            raise described_error("units", f"has {unit!r} for {name}", allowed) from error
+            raise described_error(
+                "units", f"has {unit!r} for {name}", f"a unit of the dimension of {UNITS[name]}"
+            ) from error
     return (pairs, {}) if by_name else ({}, pairs)
 
 

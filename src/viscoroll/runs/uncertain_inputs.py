@@ -541,7 +541,9 @@ class _Reader:
         # one entry for each file, however it is spelt
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
         if columns and next(iter(columns.values())).size != values.size:
-            raise self.fault(number, f"{where} is not as long as the other columns of this file")
+            raise self.fault(
+                number, f"{where} and another one used differ in length: give it a file of its own"
+            )
         columns[number.name] = values
 
 
@@ -550,9 +552,8 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
     path: path of a .csv, .nc (netCDF-4) or .parquet file.
     column: name of the column or variable.
-    unit: unit in pint's spelling, "1" of a ratio, to which the numbers are converted if the heading
-        of a CSV or a .parquet, or the attribute ``units`` of a .nc, states another; without one it
-        is taken, with a warning.
+    unit: unit in pint's spelling, "1" of a ratio; numbers in another unit, which the heading or the
+        attribute ``units`` of a .nc states, are converted; without one it is taken, with a warning.
     Returns float64, (n,), n >= 1, contiguous.
     Raises FileError for a CSV that cannot be read, has no such column or several, or cells in it
     that are no numbers; ParameterError for its unit, if that is unknown or has another dimension;

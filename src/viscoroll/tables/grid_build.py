@@ -194,7 +194,7 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
         )
     if shape := what.scene().shape:
         found = f"has arrays of shape {shape} as parameters"
-        allowed = "a Scene or Cylinder whose parameters are numbers: make a grid for each"
+        allowed = "a Scene or Cylinder whose parameters are numbers: make a grid for each element"
         raise described_error("what, the roller,", found, allowed)
     if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
         raise described_error(
