@@ -84,8 +84,7 @@ DRUM_M = np.array([0.1, 0.3, 0.7, 0.5, 0.2])
 def rows(*columns, sep=",", decimal="."):
     """Lines of a file of these columns."""
     return "\n".join(
-        sep.join(f"{x:.10g}".replace(".", decimal) for x in row)
-        for row in zip(*columns, strict=True)
+        sep.join(f"{x:.10g}".replace(".", decimal) for x in row) for row in zip(*columns)
     )
 
 

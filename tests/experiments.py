@@ -85,7 +85,7 @@ temperature = 20.0
 def measurements(folder, old="", new=""):
     """A TOML file and its CSV, with this for that in both."""
     data = resistance(SLOW, seed=1)
-    rows = [f"{V!r},{M!r}" for V, M in zip(data.V.tolist(), data.M.tolist(), strict=True)]
+    rows = [f"{V!r},{M!r}" for V, M in zip(data.V.tolist(), data.M.tolist())]
     drum = "\n".join(["speed [m/s],moment [N m/m]", "# a remark", *rows])
     for name, text in (("drum.csv", drum), ("data.toml", FILE)):
         (folder / name).write_text(text.replace(old, new) if old else text)

@@ -51,8 +51,7 @@ def filled(text, case):
         columns = [column(part.strip()) for part in found[1].split(";")]
         sep = case.get("sep", ",")
         return "\n".join(
-            case.get("begin", "") + sep.join(row) + case.get("end", "")
-            for row in zip(*columns, strict=True)
+            case.get("begin", "") + sep.join(row) + case.get("end", "") for row in zip(*columns)
         )
 
     def column(part):

@@ -161,11 +161,6 @@ keep = "all"
 fields = ["V", "omega", "x", "force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss"]
 summaries = ["force", "torque", "work_force", "slip_loss"]
 """  # noqa: E501
-SPUN = (
-    DRIVEN_ROLLER[: DRIVEN_ROLLER.index("omega0")]
-    + "[drive]\nomega = { times = [0.0, 1.0], values = [0.05, 0.2] }"
-)
-SPUN += "\n" + DRIVEN_ROLLER[DRIVEN_ROLLER.index("[run]") :].replace('"brake_loss", ', "")
 UNSTEADY = """[cylinder]
 R = 0.1
 m = 35.5
@@ -211,17 +206,12 @@ FILES = {
     "rubber on rubber": RUBBER + SOFT_BASE,
     "rubber on steel": RUBBER.replace("m = 35.5", "m = 35.5\ncoupled = false") + HARD_BASE,
     "on what is rigid": RUBBER + RIGID_BASE,
-    "known rubber": CERTAIN.replace(
-        "0.5\n", "0.5\nprony = { E = [0.3, 1.5], tau = [2e-2, 1e-3] }\n", 1
-    )
-    + SOFT_BASE,
     "a rigid roller": CERTAIN.replace("3e6", "inf") + SOFT_BASE,
     "driven": DRIVEN,
     "own times": OWN_TIMES,
     "given V": GIVEN_V,
     "given omega": GIVEN_OMEGA,
     "a driven roller": DRIVEN_ROLLER,
-    "a spun roller": SPUN,
     "unsteady": UNSTEADY,
 }
 FILES = {

@@ -1,4 +1,7 @@
-"""The suite's one comparison allows what it is told, and nothing else."""
+"""The suite's one comparison allows nothing but what it is told.
+
+That it allows this much, NaN for NaN and infinity for infinity, all other tests show.
+"""
 
 import numpy as np
 import pytest
@@ -18,10 +21,3 @@ def test_what_is_not_allowed_is_refused():
     ):
         with pytest.raises(AssertionError):
             close(found, exact, rel, scale=scale)
-
-
-def test_what_is_allowed_passes():
-    for same in (0.0, np.nan, np.inf):
-        assert close(same, same, 0.0)
-    assert close([1.0, 1.0 + 9e-13], 1.0, 1e-12)
-    assert close([[1.0, 9e-10]], [[1.0, 0.0]], 1e-9, scale=[[1.0, 1.0]])

@@ -32,7 +32,7 @@ def delta_star(scene, V):
 
 ALPHA, KAPPAS, MUS, V, S = states(60, 1)
 EACH = vr.Scene(ALPHA, KAPPAS, MUS)
-one_and_each = pytest.mark.parametrize("scene", [SCENE, EACH], ids=["one", "each"])
+one_and_each = pytest.mark.parametrize("scene", [SCENE, EACH])
 
 
 # --- an alpha each, a material each ---

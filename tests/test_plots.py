@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from calls import pair
+from refusals import refused
 from run_files import run_of
 
 import viscoroll as vr
@@ -48,6 +49,7 @@ def test_the_pressure_on_a_cover():
     (axes,) = found.plot().axes
     assert np.array_equal(axes.lines[0].get_ydata(), found.p)
     assert "shear" not in axes.get_ylabel()
+    refused(belt.stress([], 1.0, delta=0.0).plot, "a plot needs")
 
 
 def test_the_histogram_of_close_values_has_many_bars():
@@ -59,17 +61,3 @@ def test_the_histogram_of_close_values_has_many_bars():
     (stairs,) = right.patches
     assert (stairs.get_data().values > 0).sum() > 40
     assert not right.get_title()
-
-
-def test_equilibria_of_heat():
-    """Temperatures over the speed, the unstable ones open; a stress at no place has no figure."""
-    rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), shift=vr.WLF(T0=-50.0))
-    roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, mu=0.6, load=2e4)
-    found = roller.temperature([1.0, 2.0], ambient=20.0, conductance=6.0)
-    stable, _ = found.plot().axes[0].lines
-    assert np.array_equal(stable.get_ydata(), found.temperature[found.stable])
-    limit = roller.heat_limit(70.0, load=[1e4, 2e4], ambient=20.0, conductance=6.0)
-    (line,) = limit.plot().axes[0].lines
-    assert np.array_equal(line.get_ydata(), limit.V)
-    with pytest.raises(vr.ParameterError, match="a plot needs"):
-        roller.stress([], 1.0, delta=0.0).plot()

@@ -24,7 +24,6 @@ SECONDS = float(os.environ.get("FUZZ_SECONDS", "0")) / 4.0
 #: a motion that takes longer hangs
 STEPS = 5000
 ENDED = {MotionStatus.DONE, MotionStatus.RESTED}
-SCENE = vr.presets.PAPER_SECTION_5
 
 
 def tens(low, high):

@@ -403,9 +403,7 @@ def test_schedules_carry_units(name, unit):
 def test_feedbacks_carry_units(name, units):
     values = 2.0, -0.25, -0.125
     exact = {name: vr.Feedback(*values)}
-    milli = (
-        Quantity(1e3 * value, f"milli{unit}") for value, unit in zip(values, units, strict=True)
-    )
+    milli = (Quantity(1e3 * value, f"milli{unit}") for value, unit in zip(values, units))
     found = {name: vr.Feedback(*milli)}
     assert close(of_cylinder(**found).V, of_cylinder(**exact).V, tolerances.UNIT_CONVERTED)
     wrong = {name: vr.Feedback(2.0, V=Quantity(1.0, "kg"))}

@@ -20,7 +20,6 @@ from viscoroll.contact_mechanics.contact_table import SLOPES_OF_BODIES
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 KAPPA = SCENE.kappa
-MU = SCENE.mu
 TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: a hump a mode, of ever smaller height
 TEN = vr.Prony(2.0 ** np.arange(10), 10.0 ** np.linspace(0.0, -18.0, 10))
@@ -335,14 +334,7 @@ def test_losses_are_what_the_loads_put_in():
     assert math.isnan(SCENE.steady().loss.efficiency[0])
 
 
-# --- arrays ---
-
-
-def test_masses_change_the_rates_alone():
-    roller = vr.presets.RUBBER_CYLINDER.replace(load=300.0)
-    found = roller.replace(m=[10.0, 20.0]).steady(V=1.0, torque=0.0)
-    assert close(found.force[:, 0], roller.steady(V=1.0, torque=0.0).force[0], tol.SCENE)
-    assert close(found.eigenvalues[0], 2.0 * found.eigenvalues[1], tol.SCENE)
+# --- the least and the largest numbers ---
 
 
 def test_eigenvalues_at_the_least_and_largest_numbers():

@@ -221,8 +221,6 @@ HALF_SPACE_CODE_TAU = 3.8e-3
 #: numbers that the paper prints, in units of their last digit; measured 1.1 in kappa, which is
 #: 2.921 by the paper's own list in SI units and printed 2.91.
 PAPER_DIGITS = 1.2
-#: a deviation found again: the file keeps three digits of it.
-COMMITTED = 0.01
 
 # --- runs (test_runs.py, test_run_store.py) ---
 # Largest sample correlation of three columns of a Latin hypercube of 1000: four standard
@@ -235,11 +233,6 @@ TRUNCATED = 1e-12
 COPULA = 1e-3
 #: Mean and variance against numpy's: other orders of summation of up to 1e5 numbers of size 1.
 MOMENT = 1e-12
-
-# --- motions in extended precision (evidence/test_precise.py) ---
-# V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15;
-# measured 1e-20, of driven ones 2e-27.
-PRECISE_MOTION = 1e-17
 
 # --- sensitivity (test_sensitivity.py) ---
 # Sobol index of an input that a motion does not feel: sums of a thousand differences that round;
@@ -419,8 +412,6 @@ FMU_ROUNDED = 1e-14
 #: Forces of an element against the law: omega R - v of an FMU and omega - V of the law round apart,
 #: which is amplified by V over the creep at which the contact slips.
 FMU_FORCES = 1e-10
-#: and its slopes.
-FMU_SLOPES = 1e-9
 #: Slopes against quotients of differences.
 FMU_QUOTIENTS = 1e-6
 #: A roller as co-simulation at rtol 1e-8 against ``roll`` at 1e-11, of the largest of V, omega, x.

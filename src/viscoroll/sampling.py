@@ -119,7 +119,7 @@ def sample(
     Notes
     -----
     The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
-    strata of every quantity, "sobol" if n is a power of two (``tests/test_sampling.py``).
+    strata of every quantity, "sobol" if n is a power of two (``tests/runs/test_runs.py``).
     """
     check_one_given(seed=seed, rng=rng)
     if seed is None:

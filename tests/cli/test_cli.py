@@ -30,7 +30,7 @@ pytestmark = [
 ]
 
 COMMANDS = [
-    name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu", "tables grid")
+    name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu")
 ]  # these take long
 UNCERTAIN = """
 preset = "paper-section-5"
@@ -108,7 +108,6 @@ assert not heavy, heavy"""
         # an error that nobody hears is one
         ("contact 2>&-", 2, ""),
         ("contact 2>/dev/full", 2, ""),
-        ("contact >&- 2>&-", 2, ""),
     ],
 )
 def test_output_that_nothing_takes(line, code, error):

@@ -17,13 +17,8 @@ MODULES = [each.name for each in pkgutil.walk_packages(vr.__path__, "viscoroll."
 
 
 def callables(name, thing):
-    """Yield name and function: the public functions of a module, the methods of a class, or a
-    function itself.
-    """
-    if inspect.ismodule(thing):
-        for part in thing.__all__:
-            yield from callables(f"{name}.{part}", getattr(thing, part))
-    elif inspect.isclass(thing):
+    """Yield name and function: the methods of a class, or a function itself."""
+    if inspect.isclass(thing):
         for part, method in inspect.getmembers(
             thing, lambda each: inspect.isfunction(each) or inspect.ismethod(each)
         ):
@@ -34,22 +29,20 @@ def callables(name, thing):
 
 
 def shown_on_the_site():
-    """Return the functions and methods that the site shows, once each: function -> its first name.
+    """Yield the functions and methods that the reference lists, with a name of each.
 
-    They are all that are public, and those of the classes that the reference lists beside.
+    All that are public are among them: evidence/test_site.py.
     """
-    found = [pair for name in vr.__all__ for pair in callables(name, getattr(vr, name))]
     for line in (ROOT / "docs/api.rst").read_text(encoding="utf-8").splitlines():
         if line.startswith(".. currentmodule:: "):
             module = line.removeprefix(".. currentmodule:: ")
         elif re.fullmatch(r"   [\w.]+", line):
             owner, _, name = f"{module}.{line.strip()}".rpartition(".")
-            found += callables(name, getattr(pkgutil.resolve_name(owner), name))
-    # the first of several names
-    return {function: name for name, function in reversed(found)}
+            yield from callables(name, getattr(pkgutil.resolve_name(owner), name))
 
 
-SHOWN = shown_on_the_site()
+#: function -> a name of it
+SHOWN = {function: name for name, function in shown_on_the_site()}
 
 
 @pytest.mark.filterwarnings(

@@ -1,4 +1,4 @@
-"""Pages of the documentation that take long or are many, and a command whose example takes long."""
+"""Pages of the documentation that take long or are many."""
 
 import re
 import shlex
@@ -50,14 +50,6 @@ def test_the_page_of_measurements_runs(here, capsys):
     shown = capsys.readouterr().out
     assert "Identification of 7 unknowns from 240 points" in shown
     assert "planned: expected standard deviations, if the cylinder has the true values" in shown
-
-
-def test_example_of_a_coupled_grid_runs(here, capsys):
-    assert cli.main(["tables", "grid", "--help"]) == 0
-    _, *examples = capsys.readouterr().out.split("\n  viscoroll ")
-    for example in examples:
-        assert cli.main(shlex.split(example)) == 0
-    assert (here / "rubber.nc").exists()
 
 
 def test_run_file_pages_can_be_followed(here, capsys):

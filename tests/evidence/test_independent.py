@@ -2,13 +2,8 @@
 explains.
 """
 
-import json
-
 import pytest
 import tolerances as tol
-from closeness import close
-from places import kept
-from processes import made
 
 from pipeline.evidence.prove import independent
 
@@ -51,15 +46,3 @@ def test_no_further_off_than_its_own_errors_explain(source):
     off = getattr(independent, source)()
     for name, bound in BOUNDS[source].items():
         assert abs(off[name]).max() <= bound, name
-
-
-def test_committed_deviations_are_those_found_now(tmp_path):
-    made("evidence.prove.independent", "-o", tmp_path / "independent.json")
-    now = json.loads((tmp_path / "independent.json").read_text())
-    committed = kept("independent.json")
-    scale = tol.STRESS_ELLIPSE / tol.COMMITTED
-    for mine, theirs in zip(now["deviations"], committed["deviations"], strict=True):
-        for name in ("worst", "mean"):
-            assert close(mine.pop(name), theirs.pop(name), tol.COMMITTED, scale=scale)
-        assert mine == theirs
-    assert [row["here"] for row in now["paper"]] == [row["here"] for row in committed["paper"]]

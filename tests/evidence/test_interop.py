@@ -178,7 +178,7 @@ def folder_of(material, place):
     return place
 
 
-@pytest.fixture(scope="module", params=[RUBBER, PAIR], ids=["rubber", "pair"])
+@pytest.fixture(scope="module", params=[RUBBER, PAIR])
 def folder(request, tmp_path_factory):
     """A folder of a law of half-spaces, and states of it."""
     return folder_of(request.param, tmp_path_factory.mktemp("law")), states(request.param)
@@ -248,7 +248,7 @@ def assert_columns(found, exact, rel, **scales):
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-@pytest.mark.parametrize("material", [NIP, LINING], ids=["nip", "lining"])
+@pytest.mark.parametrize("material", [NIP, LINING])
 def test_programs_have_the_contact_of_covers(name, material, tmp_path):
     """Where shear acts back, at rest too, also at V = -0."""
     kappa, mu, V, slip = states(material).T

@@ -124,31 +124,22 @@ class Instance:
 
 
 @both
-def test_element_has_forces_and_slopes_of_the_law(built, name):
+def test_element_has_forces_of_the_law(built, name):
+    """Its slopes are those of its forces, below, and of the law: evidence/test_interop.py."""
     cylinder = CYLINDERS[name]
     R = cylinder.R
     random = np.random.default_rng(3)
     v = random.choice([-1.0, 1.0], 100) * 10.0 ** random.uniform(-4.0, 2.0, 100)
     star = cylinder.contact(v, delta=0.0).delta_star
     omega = v / R * (1.0 + star * random.uniform(-1.3, 1.3, 100))
-
-    def outputs(Q, M_half_space, M_cylinder):
-        return np.array([Q - M_half_space / R, -R * Q - M_cylinder, M_half_space, M_cylinder]).T
-
-    f = cylinder.law()(v, omega, slopes=True)
-    exact = outputs(f.Q, f.M_half_space, f.M_cylinder)
-    by_v = outputs(f.dQ_dV, f.dM_half_space_dV, f.dM_cylinder_dV)
-    by_omega = outputs(f.dQ_domega, 0.0 * v, 0.0 * v)
-    slopes = np.stack([by_v, by_omega], axis=-1)
+    Q, _, *moments = cylinder.law()(v, omega)
+    exact = np.array([Q - moments[0] / R, -R * Q - moments[1], *moments]).T
     scale = cylinder.load * np.array([1.0, R, R, R])
     with Instance(built(name, "ContactElement")) as element:
         for n in range(100):
             element.set(v=v[n], omega=omega[n], load=cylinder.load)
             # omega and v of the law are rounded, which a creep of little counts
             assert close(element.get(OUTPUTS), exact[n], tol.FMU_FORCES, scale=scale)
-            found = element.slopes(OUTPUTS, ("v", "omega"))
-            size = abs(slopes[n]).max(axis=0)
-            assert close(found, slopes[n], tol.FMU_SLOPES, scale=size)
 
 
 def assert_slopes(slopes, values, at, steps):
@@ -156,7 +147,7 @@ def assert_slopes(slopes, values, at, steps):
     for column, (name, value), h in zip(slopes.T, at.items(), steps):
         ends = {k: values(at | {name: value + k * h}) for k in (-2, -1, 1, 2)}
         quotient = (8.0 * (ends[1] - ends[-1]) - (ends[2] - ends[-2])) / (12.0 * h)
-        assert close(column, quotient, tol.FMU_QUOTIENTS, scale=abs(quotient).max()), name
+        assert close(column, quotient, tol.FMU_QUOTIENTS, scale=abs(quotient).max())
 
 
 @pytest.mark.parametrize("v", [-2.0, 4e-7, 0.0])
@@ -203,7 +194,7 @@ def assert_rolls(
     assert close(found["time"], t, tol.FMU_ROUNDED, scale=1.0)
     for column, name, unit in ("v", "V", 1.0), ("omega", "omega", cylinder.R), ("x", "x", 1.0):
         scale = max(abs(exact[name]).max(), least / unit)
-        assert close(found[column], exact[name], rel, scale=scale), column
+        assert close(found[column], exact[name], rel, scale=scale)
 
 
 @both
@@ -560,13 +551,11 @@ def test_program(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("missing", ["fmpy", "cc"])
-def test_what_is_missing_is_told(tmp_path, monkeypatch, capsys, missing):
+def test_what_is_missing_is_told(tmp_path, monkeypatch, missing):
     if missing == "cc":
         monkeypatch.setenv("PATH", str(tmp_path))
     else:
         monkeypatch.setitem(sys.modules, "fmpy", None)
     with pytest.raises(MissingDependencyError, match=f"{missing}.* is not installed"):
         fmu.build(11.0, tmp_path / "a.fmu")
-    assert main(["fmu", TOML, "-o", str(tmp_path / "a.fmu")]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
     assert not list(tmp_path.iterdir())

@@ -101,7 +101,7 @@ def files(draw):
         head = [way.format(name, unit) if unit else name, *[unit] * (way == "{}")]
         numbers = [f"{number:.9g}".replace(".", decimal) for number in values * units[unit]]
         lines.append(head + numbers)
-    return "\n".join(map(sep.join, zip(*lines, strict=True)))
+    return "\n".join(map(sep.join, zip(*lines)))
 
 
 @pytest.mark.filterwarnings("error")

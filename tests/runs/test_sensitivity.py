@@ -99,7 +99,7 @@ def test_a_linear_motion_shares_its_variance(sliding):
     for k, t in enumerate(sliding["t"].values):
         for name, slopes in (("V", (1.0, GAMMA * t)), ("x", (t, GAMMA * t**2 / 2))):
             parts = np.square(slopes) * spread
-            for name_of_input, exact in zip(("V0", "mu"), parts / parts.sum(), strict=True):
+            for name_of_input, exact in zip(("V0", "mu"), parts / parts.sum()):
                 for key in ("S1", "ST"):
                     assert inside(sliding, name, key, name_of_input, exact, k)
 

@@ -5,6 +5,7 @@ told.
 import ctypes
 import json
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 from pathlib import Path
 
@@ -20,7 +21,7 @@ import viscoroll as vr
 from viscoroll import tables
 from viscoroll.core import files
 from viscoroll.laws.law_netcdf import law_table_of
-from viscoroll.laws.law_table import LawTable, law_axis
+from viscoroll.laws.law_table import LawTable, law_axis, law_table
 from viscoroll.laws.row_layout import AXIS_FUNCTIONS, FUNCTIONS
 from viscoroll.materials.checked_netcdf import checksum
 from viscoroll.presets import read_law_source, read_roller
@@ -84,7 +85,6 @@ def test_a_file_has_the_bits_of_its_material(tmp_path, name):
         ({"material": BODIES}, FUNCTIONS, (10, 0)),
         ({"alpha": (3.0, 5.0)}, AXIS_FUNCTIONS, (1, 0, 8, 0)),
     ],
-    ids=["alpha", "bodies", "every alpha"],
 )
 def test_stated_errors_are_those_of_other_places_and_wrong_numbers_are_found(
     given, functions, place
@@ -111,11 +111,22 @@ def test_one_alpha_of_a_file_of_every_alpha(tmp_path):
     exact = own.contact(V, delta=DELTA)
     for name, value in scene.contact(V, delta=DELTA).as_dict().items():
         size = 1.0 if name in ("beta", "Q", "epsilon", "M") else 0.0
-        assert close(value, exact[name], tol.AXIS_LAW, scale=size), name
+        assert close(value, exact[name], tol.AXIS_LAW, scale=size)
     assert vr.load_law(saved, alpha=4.0).alpha == 4.0
 
 
 # --- wherever a material stands ---
+
+
+def test_a_table_is_made_once_and_shared():
+    with ThreadPoolExecutor(4) as pool:
+        made = [*pool.map(law_table, [vr.Prony([1.5, 0.25], [1.0, 0.125])] * 4)]
+    first = made[0]
+    assert all(table is first for table in made)
+    assert law_table(first) is first
+    assert law_table(vr.Bodies(SERIES, SERIES)) is law_table(SERIES)
+    for values in (first.coefficients, first.fast_limit, first.record.rows):
+        assert not values.flags.writeable
 
 
 @pytest.mark.parametrize("name", ["on steel", "pair"])

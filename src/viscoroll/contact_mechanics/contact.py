@@ -199,7 +199,7 @@ def contact(
     Accuracy of method "table" for one material (one alpha, a series or two bodies): the relative
     error of delta_star, M and Q is below 5e-15, that of the parts of M too, relative to M.  For lam
     and epsilon it is 5e-15, and 1.5e-14 and 3e-14 in one octave of speed at alpha above 15.
-    This holds for any speed and creepage (``tests/materials/test_law_table.py``).  Where each state
+    This holds for any speed and creepage (``tests/test_claims.py``).  Where each state
     has its own alpha or material it is 1e-13 for alpha in [1, 1e4] and kappa V in [1e-7, 1e5].  The
     error of beta is that of lam times 1/(1 - |delta|/delta_star), its condition number, and the
     error of grip twice that.  The error of N is 2e-14 of its largest value
