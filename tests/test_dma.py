@@ -12,6 +12,7 @@ from closeness import close
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from places import DATA
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll.measurements.spectrum import FLOOR
@@ -215,8 +216,8 @@ def test_found_factors_are_a_shift_and_give_a_law():
     rubber = fit.material(0.49)
     moved = rubber.at(-25.0, fit.shifts)
     assert close(moved.T_ref, rubber.T_ref * wlf(-25.0), tol.DMA_SHIFT_BETWEEN)
-    with pytest.raises(vr.ParameterError, match="at least 3"):
-        vr.ShiftFactors(temperature=(0.0, 10.0), a_T=(9.0, 1.0), T0=10.0).wlf()
+    two = vr.ShiftFactors(temperature=(0.0, 10.0), a_T=(9.0, 1.0), T0=10.0)
+    refused(two.wlf, "at least 3")
     with pytest.warns(vr.ModelWarning, match="times the shift factor that was found at"):
         vr.ShiftFactors(temperature=(0.0, 10.0, 20.0), a_T=(100.0, 99.0, 1.0), T0=0.0).wlf()
 
@@ -253,7 +254,6 @@ def test_many_points_are_thinned():
     material = fit.material()
     assert close(material.storage(inner), storage, tol.DMA_MANY)
     assert close(material.loss(inner), loss, tol.DMA_MANY)
-    assert close((fit.measured.low, fit.measured.high), fit.band, 1e-15)
 
 
 def relaxing(t):
@@ -275,8 +275,6 @@ def test_relaxation_and_dynamic_data_give_one_material():
     assert close(material.loss(omega), loss, tol.DMA_RELAXATION_LOSS)
     assert close(fit.modulus(t), fit.material().relaxation(t), 1e-13)
     assert close(fit.E, E, tol.DMA_ALPHA)
-    shear = vr.fit_relaxation(t, relaxing(t) / 3.0, misfit=1e-3, mode="shear").material(0.5)
-    assert close(shear.relaxation(t), relaxing(t), tol.DMA_RELAXATION)
 
 
 # --- files ---

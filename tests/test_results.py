@@ -127,4 +127,3 @@ def test_results_say_whether_they_succeeded():
     assert (none.success, none.status, none.message) == (False, 1, none.reason)
     assert ROLLER.steady(force=[2.0, 1e9]).success.tolist() == [True, False]
     assert ROLLER.contact(0.01, delta=0.0).success
-    assert ROLLER.roll(2.0, 20.0, [1.0]).success

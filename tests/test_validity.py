@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from places import ROOT
 
 import viscoroll as vr
 
@@ -74,9 +73,9 @@ def test_the_accuracy_of_M_bounds_its_error_and_contact_states_it(noise, seed):
 
 
 def test_what_was_measured_stays_with_the_material():
-    data = vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv")
+    data = vr.read_dma(vr.datasets.path("dma.csv"))
     fit = vr.fit_prony(*data, source="dma.csv")
-    errors = tuple(zip(fit.admissible.rate.tolist(), fit.admissible.error.tolist(), strict=True))
+    errors = tuple(zip(fit.admissible.rate.tolist(), fit.admissible.error.tolist()))
     assert fit.material(0.5).measured == vr.Measured(
         data[0].min(), data[0].max(), max(fit.misfit), "dma.csv", errors
     )

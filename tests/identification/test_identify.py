@@ -83,9 +83,7 @@ def test_exact_data_give_the_truth(case):
     )
     for name, value in fit.values.items():
         exact = {"V0:throw": 4.0}.get(name) or KNOWN[name]
-        assert close(value, exact, tol.IDENTIFIED_DRIVEN if "clock" in case else tol.IDENTIFIED), (
-            name
-        )
+        assert close(value, exact, tol.IDENTIFIED_DRIVEN if "clock" in case else tol.IDENTIFIED)
     assert fit.chi2 < tol.IDENTIFIED_CHI2
     assert fit.cylinder.mu == fit.values.get("mu", TRUTH["mu"])
     assert not fit.does_not_act
@@ -123,9 +121,7 @@ def test_slow_rolling_tells_a_product_alone():
     (product,) = fit.products()
     assert product.powers == {"E_1": 1.0, "T_ref": 1.0}
     assert product.low < TRUTH["E_1"] * TRUTH["T_ref"] / product.value < product.high
-    text = str(fit)
-    assert "the data do not depend on mu" in text
-    assert "E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
+    assert "E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in str(fit)
 
 
 @pytest.mark.long
@@ -175,10 +171,10 @@ def test_sigma_that_is_not_given_is_estimated():
     bare = [vr.Resistance(V, data[0].M), vr.Traction(data[1].V, data[1].delta, data[1].Q)]
     fit = fit_of("mu E T_ref", bare)
     for name, sigma in {"M of resistance": 0.01, "Q of traction": 1.0}.items():
-        assert close(fit.sigma[name][0], sigma, tol.SIGMA), name
+        assert close(fit.sigma[name][0], sigma, tol.SIGMA)
     for name in fit.values:
         assert abs(fit.values[name] - given.values[name]) < 0.5 * given.stderr[name]
-        assert close(fit.stderr[name], given.stderr[name], tol.SIGMA), name
+        assert close(fit.stderr[name], given.stderr[name], tol.SIGMA)
     assert "standard deviation estimated: M of resistance 0.0" in str(fit)
 
 
@@ -227,7 +223,7 @@ def test_a_plan_tells_what_a_fit_will_know():
     assert plan.cylinder.mu == roller().mu
     fit = fit_of(names, [resistance(seed=8), traction(seed=9)])
     for name in fit.values:
-        assert close(plan.stderr[name], fit.stderr[name], tol.PLANNED), name
+        assert close(plan.stderr[name], fit.stderr[name], tol.PLANNED)
         low, high = plan.intervals()[name]
         assert low < TRUTH[name] < high
 
@@ -247,7 +243,6 @@ def test_a_prediction_has_bands():
     assert ((by_slopes.V.low <= exact) & (exact <= by_slopes.V.high)).all()
     width = [found.V.high - found.V.low for found in (by_slopes, drawn)]
     assert close(width[1][1:], width[0][1:], tol.DRAWN)
-    assert by_slopes.to_xarray().V_low.long_name == "velocity of the axis, lower end of the band"
 
 
 def test_motions_that_fail_are_far_off_and_end_no_fit(monkeypatch):
@@ -275,12 +270,11 @@ def fit():
 
 def test_slopes_are_those_of_the_residuals(fit):
     J = fit.jacobian(fit.values)
-    for i, (name, value) in enumerate(fit.values.items()):
+    for column, (name, value) in zip(J.T, fit.values.items()):
         step = 1e-4 * value
         up, down = (fit.residuals(fit.values | {name: value + sign * step}) for sign in (1.0, -1.0))
-        assert close(
-            J[:, i], (up - down) / (2.0 * step), tol.IDENTIFIED_SLOPES, scale=np.abs(J[:, i]).max()
-        ), name
+        found = (up - down) / (2.0 * step)
+        assert close(column, found, tol.IDENTIFIED_SLOPES, scale=abs(column).max())
 
 
 def test_a_dataset_and_a_figure_hold_all_of_it(fit):
@@ -294,7 +288,6 @@ def test_a_dataset_and_a_figure_hold_all_of_it(fit):
     assert data["throw V"].units == "m s-1"
     assert data.unit.sel(unknown="E") == "Pa"
     assert fit.plot().axes
-    assert "chi2" in fit._repr_html_()
 
 
 @pytest.mark.long

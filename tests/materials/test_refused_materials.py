@@ -43,6 +43,8 @@ def of_column(content):
 
 
 DECADES = np.logspace(-1, 1, 11)
+#: temperatures of two curves
+TWO = np.repeat([20.0, 0.0], 10)
 STEP = np.logspace(-3, 3, 20)
 REFUSED = [
     *each(
@@ -383,22 +385,22 @@ REFUSED = [
             },
             "shift = 1 at 0 °C and 10 at 20 °C | shift factors a_T (time divided by time at the "
             "reference), which decrease with temperature (a list has the order of the curves)": {
-                "temperature": np.repeat([20.0, 0.0], 10),
+                "temperature": TWO,
                 "shift": [10.0, 1.0],
             },
             "reference = 10.0: must be one of 0.0, 20.0 °C, whose factors shift lists; for others "
             "give shift as a function": {
-                "temperature": np.repeat([20.0, 0.0], 10),
+                "temperature": TWO,
                 "shift": [0.1, 1.0],
                 "reference": 10.0,
             },
             "shift = 0: must be > 0: give the factors a_T, not their logarithms": {
-                "temperature": np.repeat([0.0, 20.0], 10),
+                "temperature": TWO,
                 "shift": [2.0, 0.0],
             },
             "omega | at least 2 points": {"temperature": np.arange(20.0)},
             "shift | factor for each of 2": {
-                "temperature": np.repeat([1.0, 0.0], 10),
+                "temperature": TWO,
                 "shift": [1.0],
             },
         },

@@ -96,7 +96,6 @@ def test_free_creepage_is_that_with_stick(scene):
 @pytest.mark.parametrize(
     ("omega0", "force", "torque"),
     [(1.0, 0.0, -0.35), (1.0, -0.1, 0.0), (0.5, 0.0, 0.0)],
-    ids=["reversed", "braked", "sliding"],
 )
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_motions_solve_the_equations_and_keep_energy(scene, omega0, force, torque):
@@ -164,9 +163,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     ends, known = (each.steady(torque=0.05).V for each in (grid, rows))
     assert close(ends, known, tol.GRID_MOTION)
     assert not grid.steady(torque=vr.Feedback(5.0, V=-0.1)).V.size  # 50 is beyond the grid
-    free = grid.contact(0.1, delta=0.0).as_dict()
-    assert "beta" not in free
-    assert abs(free["delta_0"]) < tol.GRID_MOTION
+    assert abs(grid.contact(0.1, delta=0.0).delta_0) < tol.GRID_MOTION
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
     refused(lambda: grid.validity(0.1), "the roller of its materials (not of a grid) with coupled")
 
