@@ -6,7 +6,14 @@ import tolerances as tol
 
 import viscoroll as vr
 from pipeline import validation
-from pipeline.validation import Check, Report, motion_checks, random_state_checks, stress_checks
+from pipeline.validation import (
+    Check,
+    Report,
+    motion_checks,
+    random_state_checks,
+    random_states,
+    stress_checks,
+)
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
@@ -18,6 +25,15 @@ def test_what_is_exceeded_or_no_number_is_counted():
     bad = Report(checks, {"seed": 0})
     assert not bad.ok
     assert "2 checks: 2 with a difference larger than allowed." in str(bad)
+
+
+def test_sample_holds_every_corner():
+    scene, V, delta = random_states(4000, 1)
+    s = np.abs(delta) / scene.contact(V, delta=0.0).delta_star
+    assert (scene.alpha == 1.0).any()
+    edges = [0.0, 5e-324, 1e-5, 1.0 - 1e-5, 1.0 - 1e-15, 1.2, np.inf]
+    assert np.histogram(s, edges)[0].all()
+    assert (V.min(), delta.min()) < (0.0, 0.0) < (V.max(), delta.max())
 
 
 @pytest.mark.parametrize(
