@@ -60,7 +60,7 @@ def test_memory_of_a_schedule_is_proportional_to_its_corners():
     times = np.arange(50_000) * 1e-3
     torque = vr.Schedule(times, 0.1 * np.sin(times))
     drive = Drive(torque=torque, force=vr.Schedule(times + 5e-4, 0.0 * times))
-    prepare = partial(drive_functions.prepare_drive, drive, 0.1, 0.1, times[-1], 1e-8)
+    prepare = partial(drive_functions.prepare_drive, drive, 0.1, 0.1, times[-1], 1e-8, None)
     assert prepare().functions.pieces.size  # imports take memory too
     tracemalloc.start()
     pieces = prepare().functions.pieces
