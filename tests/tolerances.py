@@ -648,3 +648,8 @@ COVER_FAST = 1e-6
 COVER_NU = 1e-5
 #: Forces at equilibria, over P: roundings of Q near its limit.
 COVER_STEADY = 1e-13
+
+# --- motions in extended precision (evidence/test_precise.py) ---
+# V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15;
+# measured 1e-20, of driven ones 2e-27.
+PRECISE_MOTION = 1e-17
