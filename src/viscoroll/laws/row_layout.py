@@ -489,18 +489,20 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
 def _grouped_terms(terms: Floats) -> Floats:
     """Return sums of Chebyshev polynomials T_j(s) as sums of T_4g(s) times cubic polynomials in s.
 
-    Kernels evaluate these faster.  A group has four terms.
+    Kernels evaluate these faster.  A group has :data:`.alpha_axis.GROUP` terms, four.
 
     terms: coefficients of T_0 to T_15, (16, ...); not changed.
     Returns a new array of the same shape: the coefficient of T_4g s^i at index 4 g + i.
     """
+    from ..kernels.law.alpha_axis import GROUP
+
     terms = terms.copy()
     # from the highest group down, as each changes the one below it
-    for start in range(len(terms) - 4, 0, -4):
-        for i in range(1, 4):  # T_(4g+i) = 2 T_4g T_i - T_(4g-i)
+    for start in range(len(terms) - GROUP, 0, -GROUP):
+        for i in range(1, GROUP):  # T_(4g+i) = 2 T_4g T_i - T_(4g-i)
             terms[start - i] -= terms[start + i]
             terms[start + i] *= 2.0
-    groups = terms.reshape(-1, 4, *terms.shape[1:])
+    groups = terms.reshape(-1, GROUP, *terms.shape[1:])
     groups[:, 0] -= groups[:, 2]  # T_2 = 2 s^2 - 1, T_3 = 4 s^3 - 3 s
     groups[:, 1] -= 3.0 * groups[:, 3]
     groups[:, 2] *= 2.0
