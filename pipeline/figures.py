@@ -73,6 +73,7 @@ _ARROW = {
     "mutation_scale": 14,
 }
 _TEXT = {"textcoords": "offset points", "fontsize": "large"}
+_SMALL = _TEXT | {"fontsize": "small"}
 _SPAN = {"arrowstyle": "<|-|>", "color": "black", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.8}
 
 
@@ -132,12 +133,18 @@ def _body(axes):
     axes.set_axis_off()
 
 
+def _positions(lam, epsilon):
+    """Rear edge, front edge and 801 positions between them, dense at both, in units of l0."""
+    rear = 0.5 * lam * (epsilon - 1.0)
+    front = 0.5 * lam * (epsilon + 1.0)
+    x = 0.5 * (rear + front) - 0.5 * (front - rear) * np.cos(np.linspace(0.0, np.pi, 801))
+    return rear, front, x
+
+
 def _enlarged(axes, scene, V, delta):
     """Pressure, its share mu, and shear, over x/l0, with the lengths that the law speaks of."""
     c = contact(scene, V, delta=delta)
-    rear = 0.5 * c.lam * (c.epsilon - 1.0)
-    front = 0.5 * c.lam * (c.epsilon + 1.0)
-    x = 0.5 * (rear + front) - 0.5 * (front - rear) * np.cos(np.linspace(0.0, np.pi, 801))
+    rear, front, x = _positions(c.lam, c.epsilon)
     s = stress(scene, x, V, delta=delta)
     top = float(s.p.max())
     edge = front - c.beta * c.lam
@@ -147,14 +154,7 @@ def _enlarged(axes, scene, V, delta):
     axes.plot(x, scene.mu * s.p / top, label=rf"{axis_label('mu')} $p$", **LINES[1])
     axes.plot(x, s.tau / top, label=r"shear $\tau$", **LINES[2])
     axes.axvline(0.0, **THIN | {"linestyle": "--"})
-    axes.annotate(
-        "below the axis",
-        (0.0, 1.3),
-        (-4, 0),
-        textcoords="offset points",
-        ha="right",
-        fontsize="small",
-    )
+    axes.annotate("below the axis", (0.0, 1.3), (-4, 0), **_SMALL, ha="right")
     for n, (low, high, text) in enumerate(
         (
             (rear, front, f"{axis_label('lam')} $l_0$: contact"),
@@ -164,9 +164,7 @@ def _enlarged(axes, scene, V, delta):
     ):
         height = -0.12 - 0.2 * n
         axes.annotate("", (high, height), (low, height), arrowprops=_SPAN)
-        axes.annotate(
-            text, (front, height), (8, 0), textcoords="offset points", va="center", fontsize="small"
-        )
+        axes.annotate(text, (front, height), (8, 0), **_SMALL, va="center")
     for place in (rear, front, edge, middle):
         axes.plot([place, place], [-0.58, 0.0], **THIN)
     axes.annotate("slip", (0.5 * (rear + edge), 0.08), ha="center", fontsize="small")
@@ -213,10 +211,12 @@ def figure_2():
 def figure_3():
     """(a) traction Q over delta at some speeds; (b) moment M over V at some alphas."""
     scene = PAPER_FIGURES_2_3
-    title = (
-        f"Traction and rolling resistance, Eqs. (17), (18), for {describe(scene, 'mu', 'kappa')}"
+    figure, (left, right) = new_figure(
+        f"Traction and rolling resistance, Eqs. (17), (18), for {describe(scene, 'mu', 'kappa')}",
+        1,
+        2,
+        3.6,
     )
-    figure, (left, right) = new_figure(title, 1, 2, 3.6)
     delta = np.linspace(-_MOST_CREEP, _MOST_CREEP, 801)
     V = np.linspace(-_MOST_SPEED, _MOST_SPEED, 801)
     for speed, line in zip((0.1, 0.2, 0.4), LINES, strict=False):
@@ -292,8 +292,7 @@ def figure_7():
     motion = roll(scene, *start, PAPER_TIMES)
     state = motion.contact(("lam", "epsilon", "beta"))
     for n, axes in enumerate(panels.flat):
-        rear, front = 0.5 * state.lam[n] * (state.epsilon[n] + np.array([-1.0, 1.0]))
-        x = 0.5 * (rear + front) - 0.5 * (front - rear) * np.cos(np.linspace(0.0, np.pi, 801))
+        _, front, x = _positions(state.lam[n], state.epsilon[n])
         found = stress(scene, x, motion.V[n], delta=motion.delta[n])
         axes.plot(x, 1e3 * np.abs(found.tau), label=r"$|\tau|/E'$", **LINES[0])
         axes.plot(x, 1e3 * scene.mu * found.p, label=r"$\mu p/E'$", **LINES[1])
@@ -325,8 +324,7 @@ GALLERY = stage.ROOT / "docs/examples/gallery"
 
 def of_page(page, name="figure"):
     """The figure that a page of the gallery gives this name."""
-    figure = runpy.run_path(str(GALLERY / f"{page}.py"))[name]
-    return figure
+    return runpy.run_path(str(GALLERY / f"{page}.py"))[name]
 
 
 #: picture -> page of the gallery, and the name of its figure there if it is another

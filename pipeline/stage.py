@@ -6,8 +6,6 @@ A stage is a function work(settings, out) -> Outcome.  :func:`run` calls it and 
 """
 
 import argparse
-import csv
-import io
 import json
 import os
 import subprocess
@@ -20,6 +18,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
+import pandas as pd
 
 from viscoroll import ViscorollError
 from viscoroll.core.errors import FileError
@@ -167,7 +166,7 @@ def run(
 
 
 def read_rows(path: Path) -> list[Row]:
-    """Rows of a CSV file, numbers where there are any."""
+    """Rows of a CSV file by the names of its columns, numbers where there are any."""
 
     def value(text):
         try:
@@ -175,17 +174,12 @@ def read_rows(path: Path) -> list[Row]:
         except ValueError:
             return text
 
-    with path.open(encoding="utf-8", newline="") as file:
-        return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+    return pd.read_csv(path, dtype=str, keep_default_na=False).map(value).to_dict("records")
 
 
 def write_rows(path: Path, rows: list[dict[str, float]]) -> None:
     """Rows as CSV under the names of their columns; raises FileError."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write_text(path, text.getvalue())
+    write_text(path, pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"))
 
 
 def shown(path: Path) -> str:

@@ -26,6 +26,7 @@ import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from email import message_from_bytes
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -84,17 +85,13 @@ def main():
     found = pythons()
     if not found:
         return 1
-    newest = list(found)[-1]
-    chosen = (
-        [(newest, False)] if quick else [(each, low) for each in found for low in (False, True)]
-    )
-    cases = [Case(version, found[version], low, SAMPLE) for version, low in chosen]
-    cases = [
-        each._replace(tests=FIRST_STEPS if quick else SUITE)
-        if (each.version, each.lowest) == (newest, False)
-        else each
-        for each in cases
-    ]
+    *_, (newest, python) = found.items()
+    cases = [Case(newest, python, False, FIRST_STEPS if quick else SUITE)]
+    if not quick:
+        cases += [
+            Case(*each, lowest, SAMPLE) for each, lowest in product(found.items(), (True, False))
+        ]
+        cases.pop()  # the newest Python with the newest dependencies, of which the suite is run
     with tempfile.TemporaryDirectory(prefix="viscoroll-matrix-") as folder:
         packages = built(Path(folder))
         with ThreadPoolExecutor(2) as pool:
@@ -128,9 +125,8 @@ def pythons() -> dict[str, str]:
 
 def packed(folder: Path, *options: str) -> tuple[Path, Path, bytes]:
     """Wheel, made of the sdist, sdist, and the metadata."""
-    command = [sys.executable, "-m", "build", *options, "--outdir", folder, ROOT]
     subprocess.run(
-        command,
+        [sys.executable, "-m", "build", *options, "--outdir", folder, ROOT],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL if options else None,
         check=True,
@@ -178,7 +174,12 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     package = f"{packages.sdist if case.lowest else packages.wheel}[{extra}]"
     pip = [
         python,
-        *["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"],
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-compile",
     ]
     warnings = "filterwarnings=ignore::viscoroll.ModelWarning"
     quiet = f"-p no:cacheprovider -o {warnings} --disable-warnings --show-capture=no -rfE"

@@ -13,6 +13,8 @@ tables into docs/accuracy_independent.md.
 
 import math
 import sys
+from itertools import groupby
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -188,10 +190,11 @@ def profiles():
 
 def section_5():
     """V and omega over |V|, onset relative: IC1-IC3 with both sets of parameters, at rtol 1e-11."""
-    rows = read_rows(REFERENCE / "section5.csv")
     off = {"V, relative": [], "ω, divided by V": [], "onset time, relative": []}
-    for ic, params in sorted({(row["ic"], row["params"]) for row in rows}):
-        data = columns([row for row in rows if (row["ic"], row["params"]) == (ic, params)])
+    for (ic, _), moments in groupby(
+        read_rows(REFERENCE / "section5.csv"), itemgetter("ic", "params")
+    ):
+        data = columns([*moments])
         scene = vr.Scene(**{name: data[name][0] for name in ("alpha", "kappa", "mu", "gamma", "j")})
         motion = vr.roll(scene, *vr.presets.PAPER_STARTS[ic], data["t"], rtol=1e-11)
         off["V, relative"].append((motion.V - data["V"]) / abs(motion.V))
@@ -239,8 +242,8 @@ def paper() -> list[Row]:
     )
     result = [row | {"here": own(row)} for row in rows]
     result[n + 1 : n + 1] = [
-        {
-            "section": early["section"],
+        early
+        | {
             "t": "",
             "quantity": what,
             "value": value,
