@@ -7,7 +7,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from .table_reader import (
 )
 
 #: units of frequency or time and of moduli, or quantity -> unit; None: those of the file
-GivenUnits = tuple[str, str] | ByQuantity | None
+GivenUnits: TypeAlias = tuple[str, str] | ByQuantity | None
 
 # --- Relaxation modulus over time from a text file ---
 

@@ -32,8 +32,6 @@ from ..materials import Prony
 
 # --- Measured moduli, checked and sorted ---
 
-#: least number of points of a curve: a series of one mode has three constants
-FEWEST_POINTS = 3
 #: least and largest value of a column, in its unit: doubles hold their squares, of which the least
 #: squares are made
 RANGE = {"low": 1e-100, "high": 1e100}
@@ -175,16 +173,14 @@ class KramersKronig(NamedTuple):
     median: float
 
 
-def data_of(
-    kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS, place: str = ""
-) -> _Data:
+def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str = "") -> _Data:
     """Check measured columns and return them as a curve, sorted by frequency or time.
 
     kind : :class:`Curve` or :class:`Relaxation`.
     columns : the fields of ``kind``, three or two (else ValueError), in any order of points, (n,),
         each without a unit or of the dimension in :data:`UNITS`: omega in rad/s, t in s; moduli
         without a unit may be in any, as long as it is the same.
-    fewest : least number of points.
+    fewest : least number of points: three, as many as a series of one mode has constants.
     place : words for the temperature of the curve, "" if it is the only one.
     Returns the curve, of the class ``kind``, in ascending order; points of one frequency or time
     stay in the order in which they were given.

@@ -33,7 +33,7 @@ from ..rollers import Cylinder
 #: word for an initial angular velocity of V0/R
 ROLLING = "rolling"
 #: unknowns of a record
-OF_RECORDS = ("V0", "omega0", "t0")
+OF_RECORDS: tuple[str, ...] = ("V0", "omega0", "t0")
 #: number of a record -> its lower bound
 _LOWER = {"load": 0.0, "m": 0.0, "temperature": ABSOLUTE_ZERO, "V0": -math.inf, "omega0": -math.inf}
 #: name -> initial value, and range (of t0 as an array of two) where the record leaves it open

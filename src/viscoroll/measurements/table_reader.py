@@ -44,7 +44,7 @@ from .text_table import Table, read_table
 
 #: pair of quantities -> function of both that returns storage and loss, the pairs that lose the
 #: fewest digits first
-PAIRS = {
+PAIRS: dict[Any, Any] = {
     ("storage", "loss"): lambda storage, loss: (storage, loss),
     ("storage", "tan delta"): lambda storage, tan: (storage, storage * tan),
     ("loss", "tan delta"): lambda loss, tan: (loss / tan, loss),
@@ -468,7 +468,7 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     for n, text in table.titles.items():
         found = _IN_DEGREES.findall(text) or _NAMED.findall(text)
         if found and n < numbers[-1]:
-            values = {_celsius(*each, commas) for each in found}
+            values = {_celsius(commas, *each) for each in found}
             # the line without its numbers, by which a line of the preamble is known as one of them
             wording = re.sub(r"[\d.,+-]", "", text)
             # by the index of the first row below the line
@@ -491,14 +491,14 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     return temperature
 
 
-def _celsius(low: str, number: str, unit: str, commas: bool) -> float | None:
+def _celsius(commas: bool, low: str, number: str, unit: str) -> float | None:
     """Return a temperature in a line in degrees Celsius, None where it is in doubt.
 
+    commas : whether commas separate cells, so that one in the number makes it doubtful.
     low : text before it that makes it the end of a range, as "20 to "; "" without.
     number : digits, with a decimal point or comma.
     unit : its unit as the file spells it, "" without, which is degrees Celsius unless the number is
     above 200.
-    commas : whether commas separate cells, so that one in the number makes it doubtful.
     """
     value = float(number.replace(",", "."))
     if low or (commas and "," in number) or (not unit and value > KELVIN):

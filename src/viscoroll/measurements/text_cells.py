@@ -36,8 +36,6 @@ _MARKS = {
     ".": " with a decimal point; correct it, or give decimal=','",
     ",": " with a decimal comma; correct it, or give decimal='.'",
 }
-#: largest power of ten of a last digit: doubles end at 1e308
-_MOST = 300
 
 
 class Numbers(NamedTuple):
@@ -127,7 +125,8 @@ def numbers_of(cells: list[str]) -> Numbers:
     """
     exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
     # the exponent of a Decimal is the power of ten of its last digit: -2 of 0.25, 3 of 1e3
-    half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]
+    # of the largest ones no more than 300, as doubles end at 1e308
+    half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), 300) for number in exact]
     return Numbers(np.array(exact, np.float64), np.array(half))
 
 
@@ -292,8 +291,6 @@ MULTIPLIED = re.compile(
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
 _POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!\d)[)}]?")
-#: rounding of factors of conversion
-_ROUNDING = 1e-9
 #: words of headings in seven languages, the quantities that they mean, and spellings of units
 DATA = tomllib.loads((files(__package__) / "headings.toml").read_text(encoding="utf-8"))
 #: unit in small letters and without blanks, degrees and points -> unit of pint
@@ -373,7 +370,8 @@ def _differ(unit: str, row: str) -> bool:
     """
     if may_be_unit(unit) and may_be_unit(row):
         with suppress(ParameterError):
-            return math.dist(conversion(unit, row), (1.0, 0.0)) > _ROUNDING
+            # beyond the rounding of factors of conversion
+            return math.dist(conversion(unit, row), (1.0, 0.0)) > 1e-9
     return False
 
 

@@ -174,8 +174,16 @@ def read_table(
             "has no row of numbers: write columns of numbers, separated by tabs, semicolons, bars, "
             "commas or blanks",
         )
-    cut = f"separated by {SEPARATORS[separator]}"
-    layout = _Layout(path, lines, separator, mode(widths), cut, is_heading_line, is_title, footers)
+    layout = _Layout(
+        path,
+        lines,
+        separator,
+        mode(widths),
+        f"separated by {SEPARATORS[separator]}",
+        is_heading_line,
+        is_title,
+        footers,
+    )
     heads = layout.heads()
     parts = [layout.part(*ends) for ends in pairwise([*heads, len(lines)])]
     headings, units, _ = parts[0]
@@ -275,8 +283,7 @@ class _Layout(NamedTuple):
             last = above[-1]
             alike = len(above) > 1 and len(lines[last - 1].cells) == len(lines[last].cells)
             # the last line above the numbers may be the row of units of the line before
-            is_units = alike and _are_units(self.headings(lines[last]))
-            return [last - 1 if is_units else last]
+            return [last - 1 if alike and _are_units(self.headings(lines[last])) else last]
         for line in lines[:first]:
             if not line.comment and len(line.cells) == width:
                 raise self.fault(
