@@ -6,26 +6,15 @@ Names of columns in seven languages, and the quantities that they mean, are read
 
 import math
 import re
-import tomllib
 import unicodedata
 from collections.abc import Mapping
-from importlib.resources import files
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import (
-    CYCLES,
-    TURNS,
-    FileError,
-    Floats,
-    ParameterError,
-    described_error,
-    suggestion,
-    warn_of_model,
-)
+from ..core import CYCLES, TURNS, Floats, ParameterError, described_error, suggestion, warn_of_model
 from ..materials import ABSOLUTE_ZERO
-from .text_cells import MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
+from .text_cells import DATA, MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
 from .text_table import Table, find_column, missing_column
 
 # --- Names of the columns of tests of materials in seven languages ---
@@ -44,30 +33,28 @@ def _plain(text: str) -> str:
     return "".join(sign for sign in text if not unicodedata.combining(sign))
 
 
-_DATA: dict[str, Any] = tomllib.loads(
-    (files(__package__) / "headings.toml").read_text(encoding="utf-8")
-)
+#: quantity -> what headings.toml says of it
+_QUANTITIES = DATA["quantities"]
+#: quantity -> its heading, or a unit
+ByQuantity = Mapping[str, str]
 #: quantity -> the unit that its numbers are converted to
-UNITS = {name: about["unit"] for name, about in _DATA["quantities"].items()}
-#: quantity -> the unit that is assumed, "" where none can be
-ASSUMED = {name: about["assumed"] for name, about in _DATA["quantities"].items()}
+UNITS = {name: about["unit"] for name, about in _QUANTITIES.items()}
 #: test -> quantities of the columns of a file without headings, in their order
-BARE = _DATA["bare"]
+BARE = DATA["bare"]
 #: test -> its quantities
 QUANTITIES = {
-    test: [name for name, about in _DATA["quantities"].items() if test in about["of"].split()]
-    for test in (*BARE, "motion")
+    test: [name for name, about in _QUANTITIES.items() if test in about["of"]] for test in BARE
 }
 #: kinds of the words of a name -> quantity
 _NAMED_BY = {
     frozenset(kinds.split()): name
-    for name, about in _DATA["quantities"].items()
+    for name, about in _QUANTITIES.items()
     for kinds in about["named"]
 }
 #: word of a name -> the kinds of word that it is; "-": a word that does not tell columns apart
 _KINDS = {
     _plain(word): kinds
-    for language in _DATA["words"].values()
+    for language in DATA["words"].values()
     for kinds, words in language.items()
     for word in words.split()
 }
@@ -75,17 +62,18 @@ _LONG = sorted(
     (word for word in _KINDS if len(word) > 2 or not word.isascii()), key=len, reverse=True
 )
 #: words written together, as "storagemodulus", "Estor", "Phasenwinkel"
-_COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")
-_WORD = re.compile("|".join(_LONG))
+_COMPOUND = re.compile(rf"(?:[eg](?=sto|loss))?(?:{'|'.join(_LONG)})+")
+#: a word of these, or the letter before them
+_WORD = re.compile("|".join(["^[eg](?=sto|loss)", *_LONG]))
 
 
 def unit_advice(name: str) -> str:
     """Return the advice to state the unit of a quantity: the argument of the readers and, of
     quantities of a DMA, the option of the command.
     """
-    unit = {"1": "%"}.get(UNITS[name], UNITS[name])
-    option = f" (in a shell: --units '{name}={unit}')" * (name in QUANTITIES["dma"])
-    return f"give the unit of its numbers, as units={{{name!r}: {unit!r}}}{option}"
+    unit = "%" if UNITS[name] == "1" else UNITS[name]
+    advice = f"give the unit of its numbers, as units={{{name!r}: {unit!r}}}"
+    return advice + f" (in a shell: --units '{name}={unit}')" * (name in QUANTITIES["dma"])
 
 
 def meanings(heading: str, row: str = "") -> list[Reading]:
@@ -95,41 +83,36 @@ def meanings(heading: str, row: str = "") -> list[Reading]:
     row : the cell of a row of units for this column, "" without.
     Returns a list of :class:`Reading`, one for each way to part the heading into name and unit
     whose name is understood, with that of the quantity and its mode, in the order of
-    :func:`.readings`: the name without a unit first; an
+    :func:`.readings`: the name without a unit first; an empty list where no name is understood.
     """
-    return [
-        each._replace(name=found[0], mode=found[1])
-        for each in readings(heading, row)
-        if (found := _quantity(each.name))
-    ]
+    return [*filter(None, map(_meaning, readings(heading, row)))]
 
 
-def _quantity(name: str) -> tuple[str, str] | None:
-    """Return quantity and mode of a column by its name without unit.
+def _meaning(reading: Reading) -> Reading | None:
+    """Return a reading of a heading with the quantity and the mode that its name means.
 
-    name : words of the heading, in any case, with signs such as ' or the Greek letters; of single
-        letters T is a temperature, and t a time, which is no quantity here.
-    Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name
-    does not say it or the quantity is no modulus, compliance or stress.
+    reading : way to read the heading, whose name is words in any case, with signs such as ' or the
+        Greek letters; of single letters T is a temperature, and t a time.
+    Returns it with the name of the quantity, a key of :data:`UNITS`, and the mode, "tension",
+    "shear", or "" where the name does not say it or the quantity is no modulus, compliance or
+    stress.
     None if a word is not in the vocabulary, the words together name no quantity, both modes are
-    named, or the text has a sign of a unit, %, ‰ or °.
+    named, or the name has a sign of a unit, %, ‰ or °.
     """
-    if re.search("[%‰°º]", name):  # of a unit
-        return None
-    text = _plain(name)
-    for pattern, words in _DATA["signs"]["replaced"]:
+    text = _plain(reading.name)
+    for pattern, words in DATA["signs"]["replaced"]:
         text = re.sub(pattern, words, text)
     parts = [part for word in re.findall(r"[^\W\d_]+|\d+", text) for part in _parts(word.lower())]
-    if not all(part in _KINDS for part in parts):
-        return None
-    kinds = {kind for part in parts for kind in _KINDS[part].split()}
+    # an unknown word is of a kind of its own, with which no quantity is named
+    kinds = {kind for part in parts for kind in _KINDS.get(part, "unknown").split()}
     modes = kinds & {"tension", "shear"}
     named = frozenset(kinds - modes - {"-"})
     # of "storage modulus" and "mean storage" one word alone tells what it is
     quantity = _NAMED_BY.get(named) or _NAMED_BY.get(named - {"modulus", "mean"})
-    if quantity is None or len(modes) > 1:
+    # % and such are of a unit
+    if quantity is None or len(modes) > 1 or re.search("[%‰°º]", reading.name):
         return None
-    return quantity, " ".join(modes) if "Pa" in UNITS[quantity] else ""
+    return reading._replace(name=quantity, mode=" ".join(modes) if "Pa" in UNITS[quantity] else "")
 
 
 def _parts(word: str) -> list[str]:
@@ -142,9 +125,9 @@ def _parts(word: str) -> list[str]:
     Returns the words that it is composed of; [word] if it is in the vocabulary itself or is not
     composed of such words.
     """
-    if word in _KINDS or not (found := _COMPOUND.fullmatch(word)):
+    if word in _KINDS or not _COMPOUND.fullmatch(word):
         return [word]
-    return [*filter(None, [found[1]]), *_WORD.findall(found[2])]
+    return _WORD.findall(word)
 
 
 # --- Which columns of a table are frequency, moduli and temperature ---
@@ -152,11 +135,6 @@ def _parts(word: str) -> list[str]:
 #: degrees; temperatures without a unit that go above it are taken to be kelvins, in which DMA
 #: seldom goes below
 KELVIN = 200.0
-#: quantity -> bounds of its numbers, and these in words
-_RANGES = {
-    "phase angle": (-math.inf, 0.5 * math.pi, "below 90 degrees"),
-    "temperature": (ABSOLUTE_ZERO, math.inf, f"above {ABSOLUTE_ZERO} °C"),
-}
 #: a heading that begins with G and at most three further letters or digits
 _OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
 #: units of what instruments measure beside moduli, which end a heading without brackets
@@ -168,6 +146,8 @@ class Column(NamedTuple):
 
     position, heading : index from 0 and heading in its table.
     name : name of its quantity, a key of :data:`UNITS`.
+    quantity : what its numbers are converted to, as "storage" or "frequency"
+        (:func:`_quantity_of_column`).
     mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
     log : base of the logarithms that its numbers are, 0 of others.
     unit : unit in which its numbers are written, of the file, the user, or assumed; "" where none
@@ -178,27 +158,15 @@ class Column(NamedTuple):
     position: int
     heading: str
     name: str
+    quantity: str
     mode: str
     log: float
     unit: str
     stated: bool
 
-    @property
-    def quantity(self) -> str:
-        """Name of what its numbers are converted to, as "storage" or "frequency".
-
-        An angular frequency counts as a frequency, a compliance as the modulus of the same name, a
-        phase angle as tan delta; "reduced" stays in the name.
-        """
-        return _quantity_of_column(self.name)
-
 
 def columns_of(
-    table: Table,
-    test: str,
-    named: Mapping[str, str],
-    overruling: Mapping[str, str],
-    defaults: Mapping[str, str],
+    table: Table, test: str, named: ByQuantity, overruling: ByQuantity, defaults: ByQuantity
 ) -> tuple[list[Column], dict[str, str]]:
     """Find the columns of a table whose quantity is known: the user named it, or the heading says
     it and its unit fits.
@@ -216,54 +184,60 @@ def columns_of(
     Raises ParameterError for a heading that the table does not have, FileError for one that several
     columns have, and for a column that the user named and whose unit is not understood.
     """
-    owners = {_index(table, heading): name for name, heading in named.items()}
+    owners = {}
+    for name, heading in named.items():
+        if (place := find_column(table, heading)) is None:
+            raise described_error(
+                "columns",
+                f"names {heading!r:.60}",
+                f"one of the headings {', '.join(map(repr, table.headings))}"
+                f"{suggestion(str(heading), table.headings)}",
+            )
+        owners[place] = name
     taken = {_quantity_of_column(name) for name in named}
-    columns: list[Column] = []
-    others: dict[str, str] = {}
-    for index, (heading, row) in enumerate(zip(table.headings, table.units, strict=True)):
+    columns = []
+    others = {}
+    for index, (heading, row) in enumerate(zip(table.headings, table.units)):
         if index in owners:
             found = _named(owners[index], heading, row, overruling)
         else:
-            found = [each for each in meanings(heading, row) if each.name in QUANTITIES[test]]
-            found = [each for each in found if _quantity_of_column(each.name) not in taken]
-        faults = [_contradiction(each, heading, overruling) for each in found]
+            found = [
+                each
+                for each in meanings(heading, row)
+                if each.name in QUANTITIES[test] and _quantity_of_column(each.name) not in taken
+            ]
+        faults = [_contradiction(each, overruling) for each in found]
         if not table.has_numbers(index):
             faults = ["it has no numbers"]
         if "" in faults:
-            reading = found[faults.index("")]
-            name = reading.name
-            unit = reading.unit
-            sign = (
-                "1" if name == "strain" and any(each.unit for each in found) else ""
-            )  # of a ratio, where per cent are as usual
-            unit = (
-                overruling.get(name)
-                or (sign if unit in NO_UNIT else unit)
-                or defaults.get(name, "")
-            )
+            name, unit, log, _, mode = found[faults.index("")]
+            if unit in NO_UNIT:
+                # of a ratio, where per cent are as usual
+                unit = "1" if name == "strain" and any(each.unit for each in found) else ""
+            unit = overruling.get(name) or unit or defaults.get(name, "")
             columns.append(
                 Column(
-                    position=index,
-                    heading=heading,
-                    name=name,
-                    mode=reading.mode,
-                    log=reading.log,
-                    unit=unit or ASSUMED[name],
-                    stated=bool(unit),
+                    index,
+                    heading,
+                    name,
+                    _quantity_of_column(name),
+                    mode,
+                    log,
+                    unit or _QUANTITIES[name]["assumed"],
+                    bool(unit),
                 )
             )
         elif index in owners:
-            raise FileError(
-                table.path,
+            raise table.error(
                 f"column {heading!r} was given for {owners[index]}, but {faults[0]}; or is another "
-                "column meant?",
+                "column meant?"
             )
         else:
             others[heading or f"column {index}"] = faults[0] if faults else ""
     return columns, others
 
 
-def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> list[Reading]:
+def _named(name: str, heading: str, row: str, overruling: ByQuantity) -> list[Reading]:
     """Return the ways to read a heading of a column whose quantity the user named, those with a
     unit first.
 
@@ -284,65 +258,48 @@ def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> 
     ways.sort(key=lambda each: each.unit in NO_UNIT)
     if name not in overruling and MULTIPLIED.search(heading):
         return [ways[0]._replace(unit=heading)]
-    spelled = {
-        each.unit for each in known if each.name == name
-    }  # as bpm of "freq_bpm", not "prime" of "G_prime"
-    behind = spelled if spelled.isdisjoint(NO_UNIT) else set()
+    # units behind the name, as bpm of "freq_bpm", not "prime" of "G_prime"
+    behind = {each.unit for each in known if each.name == name}
     with_unit = [each for each in ways if each.unit not in NO_UNIT]
-    stated = any(
-        each.sure or each.unit in behind or _RAW.fullmatch(each.unit) for each in with_unit
-    )
-    return with_unit if stated else ways
-
-
-def _index(table: Table, heading: str) -> int:
-    """Return the index of the column that the user named by its heading.
-
-    table : :class:`Table`, table with headings.
-    heading : the heading, with its unit or without.
-    Returns the index, from 0.
-    Raises ParameterError, with the headings of the table, where the table does not have it;
-    FileError where several columns have it.
-    """
-    found = find_column(table, heading)
-    if found is None:
-        raise described_error(
-            "columns",
-            f"names {heading!r:.60}",
-            f"one of the headings {', '.join(map(repr, table.headings))}"
-            f"{suggestion(str(heading), table.headings)}",
-        )
-    return found
+    if any(
+        each.sure
+        or (each.unit in behind and behind.isdisjoint(NO_UNIT))
+        or _RAW.fullmatch(each.unit)
+        for each in with_unit
+    ):
+        return with_unit
+    return ways
 
 
 def _quantity_of_column(name: str) -> str:
-    """Return :attr:`Column.quantity` of a quantity by its name."""
+    """Return what the numbers of a quantity are converted to, by its ``name``.
+
+    An angular frequency counts as a frequency, a compliance as the modulus of the same name, a
+    phase angle as tan delta; "reduced" stays in the name.
+    """
     name = name.replace("angular ", "").removesuffix(" compliance")
     return "tan delta" if name == "phase angle" else name
 
 
-def _contradiction(meaning: Reading, heading: str, overruling: Mapping[str, str]) -> str:
+def _contradiction(meaning: Reading, overruling: ByQuantity) -> str:
     """Return why the unit of a heading contradicts the quantity that the heading may name, and what
     helps.
 
     meaning : :class:`Reading`, the quantity that the heading may name, with the unit that stands in
     the heading.
-    heading : text of the heading.
     overruling : quantity -> unit that the user gives in place of that of the file; these are not
     checked.
     Returns a text for the user: the unit is unknown or of another dimension, is Hz of an angular
     frequency, or is an angle of tan delta or none of a phase angle.  "" where the unit fits, is
     missing, or is replaced by the user.
     """
-    name = meaning.name
-    unit = meaning.unit
+    name, unit, *_ = meaning
     if name in overruling or unit in NO_UNIT:
         return ""
-    problem = f"its unit {unit!r} is not a unit of {name}: {unit_advice(name)}"
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
-        return problem
+        return f"its unit {unit!r} is not a unit of {name}: {unit_advice(name)}"
     if "angular" in name and unit.lower().endswith(("hz", "cps")):
         return (
             f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
@@ -370,13 +327,13 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     name = column.name
     unit = column.unit
     values, half = table.numbers(column.position)
+    most = values.max()
     # a phase angle of rubber in degrees goes above pi/2
-    open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
-    if not column.stated and (open_unit or (name == "temperature" and values.max() > KELVIN)):
-        raise FileError(
-            table.path,
-            f"column {column.heading!r} has no unit, which its largest value {values.max():g} does "
-            f"not show: {unit_advice(name)}",
+    in_doubt = {"phase angle": most <= 0.5 * math.pi, "temperature": most > KELVIN}
+    if not column.stated and (not unit or in_doubt.get(name)):
+        raise table.error(
+            f"column {column.heading!r} has no unit, which its largest value {most:g} does not "
+            f"show: {unit_advice(name)}"
         )
     if column.log:
         values = column.log**values
@@ -387,18 +344,19 @@ def numbers_of(table: Table, column: Column) -> Numbers:
         factor *= 2.0 * math.pi  # 1/s of a frequency are cycles, which pint takes for radians
     values = factor * values + offset
     half = factor * half
-    if name in _RANGES:
-        low, high, words = _RANGES[name]
+    if name == "temperature":
         table.require(
-            (values > low) & (values < high),
-            f"the {name} must be {words}: correct or remove the row",
+            (values > ABSOLUTE_ZERO) & (values < math.inf),
+            f"the temperature must be above {ABSOLUTE_ZERO} °C: correct or remove the row",
         )
-    return (
+    if name == "phase angle":
+        table.require(
+            values < 0.5 * math.pi,
+            "the phase angle must be below 90 degrees: correct or remove the row",
+        )
         # the derivative of the tangent is 1/cos^2
-        Numbers(np.tan(values), half / np.cos(values) ** 2)
-        if name == "phase angle"
-        else Numbers(values, half)
-    )
+        return Numbers(np.tan(values), half / np.cos(values) ** 2)
+    return Numbers(values, half)
 
 
 # --- A column of a table by the name that the user gives ---
@@ -414,7 +372,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     wanted : unit of the result in pint's spelling, "1" of a ratio.
     unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the
         heading or of the row of units.  Where none is given, or it is a sign as "-" or "1", the
-        numbers are taken to be in ``wanted``, with a warning unless that is "1" or "" itself.
+        numbers are taken to be in ``wanted``, with a warning unless that is "1".
 
     Returns
     -------
@@ -445,11 +403,14 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     found = readings(heading, table.units[index])
     # a heading can be read in several ways: the unit is that of the way that gives this name, else
     # of the likeliest way that has one; ``log`` is the same for all ways
-    named = [each for each in found if each.name == name]
-    unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
-    advice = f"write its unit in the heading, as in '{name} [{wanted}]'"
+    ranked = sorted(found, key=lambda each: each.name != name)
+    unit = unit or next((each.unit for each in ranked if each.unit not in NO_UNIT), "")
     factor, offset = conversion_of_column(
-        table.path, heading, unit=unit, wanted=wanted, advice=advice
+        table.path,
+        heading,
+        unit,
+        wanted,
+        f"write its unit in the heading, as in '{name} [{wanted}]'",
     )
     values = table.numbers(index).values
     base = found[0].log if found else 0.0
@@ -465,7 +426,7 @@ def conversion_of_column(
     path: path of the file.
     column: name of the column.
     unit: its unit, a text of :data:`NO_UNIT` where it has none.
-    wanted: unit in which it is taken; "" and "1" give no warning.
+    wanted: unit in which it is taken; "1" gives no warning.
     advice: how the file states the unit.
     Returns (factor, offset) of number in ``wanted`` = factor * number + offset.
     Raises ParameterError for a unit that is unknown or of another dimension, and for what may be of
@@ -473,10 +434,10 @@ def conversion_of_column(
     and whose unit says neither.
     """
     found = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
-    if wanted == "rad s-1" and not CYCLES.search(unit):
-        if any(each.name == "rotational speed" for each in meanings(column)):
-            given = "numbers without a unit" if unit in NO_UNIT else unit
-            raise ParameterError("unit", given + TURNS, "one of these, as the unit of the column")
-    if unit in NO_UNIT and wanted not in ("", "1"):
+    turns = wanted == "rad s-1" and not CYCLES.search(unit)
+    if turns and any(each.name == "rotational speed" for each in meanings(column)):
+        given = "numbers without a unit" if unit in NO_UNIT else unit
+        raise ParameterError("unit", given + TURNS, "one of these, as the unit of the column")
+    if unit in NO_UNIT and wanted != "1":
         warn_of_model(f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}")
     return found

@@ -3,33 +3,32 @@ relaxation modulus over time (:func:`read_relaxation`).
 """
 
 import re
-from collections.abc import Mapping
+from collections import defaultdict
 from dataclasses import dataclass
 from itertools import product
-from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..core import FileError, Floats, warn_of_model
-from .dma_columns import UNITS, Column, numbers_of, unit_advice
+from ..core import FileError, FilePath, Floats
+from .dma_columns import UNITS, ByQuantity, Column
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, ModuliRecord
 from .table_reader import (
     ONE_FREQUENCY,
     PAIRS,
     SOFTEST,
-    agreeing_numbers,
-    missing,
+    Understood,
     quoted,
     refuse_repeats,
-    refuse_unread_temperatures,
     storage_and_loss,
     temperatures_of_lines,
     understand,
     warn_of_assumed_units,
 )
-from .text_table import Table
+
+#: units of frequency or time and of moduli, or quantity -> unit; None: those of the file
+GivenUnits: TypeAlias = tuple[str, str] | ByQuantity | None
 
 # --- Relaxation modulus over time from a text file ---
 
@@ -69,10 +68,10 @@ class RelaxationModulus(ModuliRecord):
 
 
 def read_relaxation(
-    path: str | PathLike[str],
+    path: FilePath,
     *,
-    columns: Mapping[str, str] | None = None,
-    units: tuple[str, str] | Mapping[str, str] | None = None,
+    columns: ByQuantity | None = None,
+    units: GivenUnits = None,
     decimal: str | None = None,
     encoding: str | None = None,
 ) -> RelaxationModulus:
@@ -130,51 +129,47 @@ def read_relaxation(
     >>> record.relaxation.tolist(), record.mode
     ([3200000.0, 2700000.0, 2400000.0], 'tension')
     """
-    table, found, others = source = understand(
-        path, "relaxation", columns=columns, units=units, decimal=decimal, encoding=encoding
-    )
-    alike: dict[str, list[Column]] = {}
+    source = understand(path, "relaxation", columns, units, decimal, encoding)
+    table, found, others = source
+    alike = defaultdict(list)
     for column in found:
-        alike.setdefault(column.quantity, []).append(column)
+        alike[column.quantity].append(column)
     pair = ("relaxation modulus",) if "relaxation modulus" in alike else ("stress", "strain")
-    if "time" not in alike or not {*pair} <= alike.keys():
-        raise missing(
-            table,
+    if not {"time", *pair} <= alike.keys():
+        raise source.missing(
             "relaxation",
             "no column was found for the relaxation modulus, nor for both stress and strain"
             if "time" in alike
             else "no column was found for time",
-            others,
         )
     table.refuse_several()
     used = [name for name in ("time", *pair, "temperature") if name in alike]
-    others |= {
-        each.heading: "not needed" for name in alike.keys() - {*used} for each in alike[name]
-    }
-    numbers = {name: agreeing_numbers(table, name, alike[name], others).values for name in used}
-    for name in used[: 1 + len(pair)]:  # all but the temperature
-        holds = (numbers[name] > 0.0) & (numbers[name] < np.inf)
-        table.require(holds, f"the {name} must be > 0 and finite: correct or remove the row")
+    others |= {column.heading: "not needed" for column in found if column.quantity not in used}
+    numbers = {name: source.numbers(alike[name]).values for name in used}
+    for name in ("time", *pair):
+        table.require(
+            (numbers[name] > 0.0) & (numbers[name] < np.inf),
+            f"the {name} must be > 0 and finite: correct or remove the row",
+        )
     # a strain is in use only beside a stress
     relaxation = numbers[pair[0]] / numbers.get("strain", 1.0)
     refuse_repeats(table, "time", numbers["time"], relaxation)
     temperature = numbers.get("temperature")
     if temperature is None:
-        refuse_unread_temperatures(table, others)
+        source.refuse_unread_temperatures()
     elif np.ptp(temperature) > SAME_TEMPERATURE:
-        raise FileError(
-            table.path,
+        raise table.error(
             f"is at {temperature.min():g} to {temperature.max():g} °C, and must be at one "
-            "temperature: keep the rows of one",
+            "temperature: keep the rows of one"
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)
     mode, notes = source.mode(next((each.mode for each in alike[pair[0]] if each.mode), ""))
     notes += ["the modulus is stress over strain"] * (len(pair) > 1) + source.notes(taken)
     return RelaxationModulus(
-        t=numbers["time"],
-        relaxation=relaxation,
-        temperature=None if temperature is None else float(np.median(temperature)),
+        numbers["time"],
+        relaxation,
+        None if temperature is None else float(np.median(temperature)),
         mode=mode,
         notes=tuple(notes),
         **_origin(path, taken),
@@ -198,9 +193,6 @@ def _origin(path: Any, taken: list[Column]) -> dict[str, Any]:
 
 # --- Storage and loss modulus over frequency from a text file ---
 
-#: tan delta that no rubber has at any frequency: that of damping rubbers in their glass transition
-#: is below
-_MOST_DAMPED = 3.0
 #: a line with a number in degrees Celsius or kelvin, which is no rate, or with a word for
 #: temperature before a number
 _TEMPERATURE = re.compile(
@@ -209,10 +201,10 @@ _TEMPERATURE = re.compile(
 
 
 def read_dma(
-    path: str | PathLike[str],
+    path: FilePath,
     *,
-    columns: Mapping[str, str] | None = None,
-    units: tuple[str, str] | Mapping[str, str] | None = None,
+    columns: ByQuantity | None = None,
+    units: GivenUnits = None,
     decimal: str | None = None,
     encoding: str | None = None,
 ) -> DynamicModuli:
@@ -284,44 +276,43 @@ def read_dma(
     >>> import viscoroll as vr
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
-    table, found, others = source = understand(
-        path, "dma", columns=columns, units=units, decimal=decimal, encoding=encoding
-    )
-    mode, pair, columns_of_quantity = _choose_columns(table, found, others)
+    source = understand(path, "dma", columns, units, decimal, encoding)
+    table, _, others = source
+    mode, pair, columns_of_quantity = _choose_columns(source)
     mode, assumed = source.mode(mode)
     notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1) + assumed
     # read at the end, since a strain that cannot be read is left out, while others are refused
     strains = columns_of_quantity.pop("strain", [])
-    numbers = {
-        quantity: agreeing_numbers(table, quantity, alike, others)
-        for quantity, alike in columns_of_quantity.items()
-    }
-    temperature = numbers["temperature"].values if "temperature" in numbers else None
+    numbers = {quantity: source.numbers(alike) for quantity, alike in columns_of_quantity.items()}
+    temperature: Floats | None = None
     reduced = "reduced frequency" in numbers
-    if temperature is None and not reduced:
-        refuse_unread_temperatures(table, others)
+    if "temperature" in numbers:
+        temperature = numbers["temperature"].values
+        # those of the tests, not of the master curve, whose reference no column states
+        if reduced and np.ptp(temperature) > SAME_TEMPERATURE:
+            temperature = None
+            others[columns_of_quantity.pop("temperature")[0].heading] = (
+                "reduced frequencies belong to one reference temperature"
+            )
+    elif not reduced:
+        source.refuse_unread_temperatures()
         temperature = temperatures_of_lines(table)
         notes += ["temperatures are those of lines above the rows"] * (temperature is not None)
-    # those of the tests, not of the master curve, whose reference no column states
-    elif temperature is not None and reduced and np.ptp(temperature) > SAME_TEMPERATURE:
-        temperature = None
-        others[columns_of_quantity.pop("temperature")[0].heading] = (
-            "reduced frequencies belong to one reference temperature"
-        )
-    omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
+    omega = numbers["reduced frequency" if reduced else "frequency"].values
     moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
     storage, loss = storage_and_loss(table, pair, moduli)
     taken = [alike[0] for alike in columns_of_quantity.values()]
     sources = [columns_of_quantity[name][0].name for name in pair]
-    if any(UNITS[name] == "1/Pa" for name in sources):
+    if UNITS[sources[0]] == "1/Pa":  # the second may be a tan delta
         with np.errstate(all="ignore"):  # what is not finite is refused
             # compliance J' - i J'' and modulus E' + i E'' are inverse
             square = storage**2 + loss**2
             storage = storage / square
             loss = loss / square
     # the decades of a modulus are below 10, and those of a low frequency negative
-    logs = omega.min() < 0.0 or storage.max() < SOFTEST
-    advice = "write log before the heading of a logarithm" if logs else "correct or remove the row"
+    advice = "correct or remove the row"
+    if omega.min() < 0.0 or storage.max() < SOFTEST:
+        advice = "write log before the heading of a logarithm"
     for name, values in {
         "frequency": omega,
         "storage modulus": storage,
@@ -334,8 +325,13 @@ def read_dma(
     if sources != ["storage", "loss"]:
         notes.append(f"moduli are from {' and '.join(sources)}")
     notes += [f"{name} agrees with {' and '.join(pair)}" for name in moduli if name not in pair]
-    strain = _strain(table, strains, others)
-    taken += strains[:1] if strain is not None else []
+    strain = None
+    if strains:
+        try:
+            strain = source.numbers(strains).values
+            taken.append(strains[0])
+        except FileError as error:
+            others |= {each.heading: error.problem * (each is strains[0]) for each in strains}
     notes += source.notes(taken)
     above = [
         text
@@ -347,68 +343,41 @@ def read_dma(
             f"no temperature is read from lines above the headings, {quoted(above)}: give "
             "temperature= to fit_prony (in a shell: --temperature)"
         )
-    _warn_of_per_cent(table, taken)
+    # a single row may be one of a sweep that the user cut
+    if omega.size > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
+        raise table.error(
+            f"all {omega.size} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "
+            "frequency sweep; give a file with several frequencies"
+        )
+    if temperature is None and len(table.starts) > 1:
+        raise table.error(
+            f"has {len(table.starts)} tables, and no column states their temperature: keep one of "
+            "them, or write 'Temperature 20 °C' above each"
+        )
     record = DynamicModuli(
-        omega=omega,
-        storage=storage,
-        loss=loss,
-        temperature=temperature,
+        omega,
+        storage,
+        loss,
+        temperature,
+        strain,
         mode=mode,
         notes=tuple(notes),
         **_origin(path, taken),
-        strain=strain,
     )
-    _refuse_mixed_sweeps(table, record)
+    if record.isothermal:
+        refuse_repeats(table, "frequency", omega, storage)
     return record
 
 
-def _strain(table: Table, alike: list[Column], others: dict[str, str]) -> Floats | None:
-    """Return the strain of each point, dimensionless, (n,); None where no column states it clearly.
-
-    table : :class:`Table`, the table that has the columns.
-    alike : list of :class:`Column`, the columns of strain, which may be none.
-    others : heading -> why the column is left out.  It is changed: columns are added that have no
-        unit or gaps, or that contradict each other.
-    """
-    try:
-        return agreeing_numbers(table, "strain", alike, others).values if alike else None
-    except FileError as error:
-        why = str(error).removeprefix(f"{table.path}: ")
-        others |= {column.heading: why if column is alike[0] else "" for column in alike}
-        return None
-
-
-def _warn_of_per_cent(table: Table, taken: list[Column]) -> None:
-    """Warn, by one ModelWarning, of tan delta without a unit that is above 3, which no rubber has:
-    it may be in per cent.
-
-    table : :class:`Table`, the table of the file.
-    taken : list of :class:`Column`, the columns that are read.
-    """
-    for column in taken:
-        if column.name == "tan delta" and not column.stated and not column.log:
-            most = numbers_of(table, column).values.max()
-            if most > _MOST_DAMPED:
-                warn_of_model(
-                    f"{table.path}: tan delta is up to {most:g}, above that of any rubber: "
-                    f"{unit_advice(column.name)}, or '1' in place of '%' if it is no per cent"
-                )
-
-
-def _choose_columns(
-    table: Table, found: list[Column], others: dict[str, str]
-) -> tuple[str, tuple[str, str], dict[str, list[Column]]]:
+def _choose_columns(source: Understood) -> tuple[str, tuple[str, str], dict[str, list[Column]]]:
     """Choose the columns from which frequency and moduli are read: one mode, one pair of
     quantities, one kind of frequency.
 
     Tension comes before shear, moduli before compliances, and the pairs in the order of
     :data:`.table_reader.PAIRS`.
 
-    table : the table of the file; it is used for the error message only.
-    found : list of :class:`Column`, columns of known quantities, in the order of the file.
-    others : heading -> why the column is left out, "" for an unknown quantity.  It is changed:
-        columns of another mode or kind than the pair, and measured frequencies beside reduced ones,
-        are added.
+    source : the table with its columns of known quantities.  Its ``others`` is changed: columns of
+        another mode or kind than the pair, and measured frequencies beside reduced ones, are added.
     Returns (mode: "tension", "shear", or "" where no heading says; pair: the two quantities that
     give the moduli, or compliances, a key of :data:`.table_reader.PAIRS`; columns: quantity
     (:attr:`.dma_columns.Column.quantity`) -> its columns, one or more, which must then agree: those
@@ -417,12 +386,14 @@ def _choose_columns(
     Raises FileError where no column is a frequency, or no two give the moduli; its message lists
     the headings.
     """
-    modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
+    _, found, others = source
+    # tension before shear
+    modes = sorted({column.mode for column in found} - {""}, reverse=True)
     quantities = {column.quantity for column in found}
-    swept = "temperature" in quantities
     problem = (
         "no column was found for frequency"
-        + ", since this is a sweep of temperature: measure a sweep of frequency" * swept
+        + ", since this is a sweep of temperature: measure a sweep of frequency"
+        * ("temperature" in quantities)
     )
     if quantities & {"frequency", "reduced frequency"}:
         problem = (
@@ -431,7 +402,7 @@ def _choose_columns(
         )
         # without compliances first, then without moduli
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
-            columns: dict[str, list[Column]] = {}
+            columns = defaultdict(list)
             unused = {}
             for column in found:
                 if column.mode not in ("", mode) or UNITS[column.name] == excluded:
@@ -439,41 +410,9 @@ def _choose_columns(
                 elif column.quantity == "frequency" and "reduced frequency" in quantities:
                     unused[column.heading] = "the reduced frequency is taken"
                 else:
-                    columns.setdefault(column.quantity, []).append(column)
+                    columns[column.quantity].append(column)
             for pair in PAIRS:
                 if columns.keys() >= {*pair}:
                     others |= unused
                     return mode, pair, columns
-    raise missing(table, "dma", problem, others)
-
-
-def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
-    """Refuse what is not one frequency sweep at each temperature.
-
-    These are: rows that are all of one frequency (to 0.1 %, at least two rows); several tables in
-    the file without a column of temperatures; where all rows are of one temperature, within 1 K or
-    because the file has none, two of one frequency whose storage moduli differ by more than a
-    factor of 1.25.
-
-    table : :class:`Table`, the table from which the record was read; its lines are named in the
-        message.
-    record : :class:`dynamic_moduli.DynamicModuli`, the moduli in the order of the rows.
-    Raises FileError for each of the three; returns nothing.
-    """
-    omega = record.omega
-    n = record.omega.size
-    # a single row may be one of a sweep that the user cut
-    if n > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
-        raise FileError(
-            table.path,
-            f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "
-            "frequency sweep; give a file with several frequencies",
-        )
-    if record.temperature is None and len(table.starts) > 1:
-        raise FileError(
-            table.path,
-            f"has {len(table.starts)} tables, and no column states their temperature: keep one of "
-            "them, or write 'Temperature 20 °C' above each",
-        )
-    if record.isothermal:
-        refuse_repeats(table, "frequency", omega, record.storage)
+    raise source.missing("dma", problem)

@@ -32,11 +32,9 @@ from ..materials import Prony
 
 # --- Measured moduli, checked and sorted ---
 
-#: least number of points of a curve: a series of one mode has three constants
-FEWEST_POINTS = 3
 #: least and largest value of a column, in its unit: doubles hold their squares, of which the least
 #: squares are made
-RANGE = 1e-100, 1e100
+RANGE = {"low": 1e-100, "high": 1e100}
 #: number of points above which the means of logarithmic bins are fitted in their place: the time of
 #: the least squares is proportional to the number of points
 MOST_POINTS = 1000
@@ -85,13 +83,6 @@ class Curve(NamedTuple):
         such a mode shows in data.
         """
         return 0.0
-
-    @property
-    def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1 in each modulus: 1 in the storage, 0 in the loss
-        modulus.
-        """
-        return 1.0, 0.0
 
     def responses(self, tau: Floats) -> Floats:
         """Return the responses of modes of strength 1, z^2/(1 + z^2) and z/(1 + z^2) with z = omega
@@ -146,11 +137,6 @@ class Relaxation(NamedTuple):
         """
         return 0.5 * float(self.t[0])
 
-    @property
-    def constant(self) -> tuple[float, ...]:
-        """Response of a long-time modulus of 1: 1."""
-        return (1.0,)
-
     def responses(self, tau: Floats) -> Floats:
         """Return the responses of modes of strength 1, exp(-t/tau).
 
@@ -187,16 +173,14 @@ class KramersKronig(NamedTuple):
     median: float
 
 
-def data_of(
-    kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS, place: str = ""
-) -> _Data:
+def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str = "") -> _Data:
     """Check measured columns and return them as a curve, sorted by frequency or time.
 
     kind : :class:`Curve` or :class:`Relaxation`.
     columns : the fields of ``kind``, three or two (else ValueError), in any order of points, (n,),
         each without a unit or of the dimension in :data:`UNITS`: omega in rad/s, t in s; moduli
         without a unit may be in any, as long as it is the same.
-    fewest : least number of points.
+    fewest : least number of points: three, as many as a series of one mode has constants.
     place : words for the temperature of the curve, "" if it is the only one.
     Returns the curve, of the class ``kind``, in ascending order; points of one frequency or time
     stay in the order in which they were given.
@@ -208,12 +192,11 @@ def data_of(
         columns of other shapes, or fewer than ``fewest`` points.
     """
     names = kind._fields
-    low, high = RANGE
     values = [
-        check_array(name, given, unit=UNITS[name], low=low, high=high)
+        check_array(name, given, unit=UNITS[name], **RANGE)
         for name, given in zip(names, columns, strict=True)
     ]
-    for name, column in zip(names, values, strict=True):
+    for name, column in zip(names, values):
         if column.ndim != 1 or column.shape != values[0].shape:
             raise shape_error(name, column.shape, "a vector (one axis), as long as the others")
     if values[0].size < fewest:
@@ -268,10 +251,9 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     x = np.log(curve.omega)
     y = np.log(curve.storage)
     ratio = np.empty_like(x)
-    nearest = min(_NEIGHBOURS, x.size) - 1
     for n, centre in enumerate(x):
         distance = np.abs(x - centre)
-        near = distance <= max(_WINDOW, np.partition(distance, nearest)[nearest])
+        near = distance <= max(_WINDOW, np.sort(distance)[:_NEIGHBOURS][-1])
         # log is ln E' of the line at the point itself
         slope, log = (
             np.polyfit(x[near] - centre, y[near], 1)
@@ -279,8 +261,7 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
             else (math.nan, 0.0)
         )
         # E'' = pi/2 dE'/d ln(omega), with dE' = E' d ln(E')
-        allowed = 0.5 * math.pi * slope * math.exp(log)
-        ratio[n] = curve.loss[n] / np.maximum(allowed, 0.0)
+        ratio[n] = curve.loss[n] / np.maximum(0.5 * math.pi * slope * math.exp(log), 0.0)
     finite = ratio[~np.isnan(ratio)]
     return KramersKronig(curve.omega, ratio, float(np.median(finite)) if finite.size else math.nan)
 
@@ -312,7 +293,9 @@ class Spectrum(NamedTuple):
             frequencies or times are used.
         Returns shape (2, n), storage and loss, of a :class:`Curve`; (1, n) of relaxation.
         """
-        return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
+        moduli = data.responses(self.tau) @ self.strength
+        moduli[0] += self.E  # the storage or the relaxation modulus
+        return moduli
 
 
 def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
@@ -338,8 +321,8 @@ def relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
     modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
     Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
     """
-    found = np.empty((*modes.shape[:2], 1 + modes.shape[2]))
-    found[..., 0] = np.multiply(constant, data.constant)[:, None]
+    found = np.zeros((*modes.shape[:2], 1 + modes.shape[2]))
+    found[0, :, 0] = constant  # in the storage or the relaxation modulus, not in the loss
     found[..., 1:] = modes
     found /= np.array(data[1:])[..., None]
     return found.reshape(-1, found.shape[2])
@@ -353,10 +336,9 @@ def residuals(data: Data, values: Floats) -> Floats:
     s; (1 + 2 modes,).
     Returns fitted divided by measured moduli - 1, dimensionless, shape (rows n,).
     """
-    # 1 + 2 modes numbers
-    count = values.size // 2
-    responses = data.responses(values[1 + count :])
-    return relative_columns(data, 1.0, responses) @ values[: 1 + count] - 1.0
+    # of 1 + 2 modes numbers the last ones are the times
+    strengths, tau = np.split(values, [1 + values.size // 2])
+    return relative_columns(data, 1.0, data.responses(tau)) @ strengths - 1.0
 
 
 def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
@@ -367,8 +349,7 @@ def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
     Returns dimensionless numbers: (storage, loss) of a :class:`Curve`,
     (relaxation,) of relaxation.
     """
-    errors = residuals(data, np.concatenate([[spectrum.E], *spectrum[1:]]))
-    errors = errors.reshape(len(data.constant), -1)
+    errors = residuals(data, np.hstack(spectrum)).reshape(len(data) - 1, -1)
     return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
 
 
@@ -441,8 +422,12 @@ class ModuliRecord(Result):
             for name, values in known.items()
             if np.ndim(values)
         }
-        about = {"title": self.TITLE, "mode": self.mode, "source": self.source}
-        about |= {"notes": "; ".join(self.notes)}
+        about = {
+            "title": self.TITLE,
+            "mode": self.mode,
+            "source": self.source,
+            "notes": "; ".join(self.notes),
+        }
         # one temperature of all points
         return xr.Dataset(data, attrs=about | {name: known[name] for name in known.keys() - data})
 
@@ -454,7 +439,7 @@ class ModuliRecord(Result):
         from ..core.plots import new_figure
 
         figure, axes = new_figure(f"{self.source or self.TITLE}, {self.mode}")
-        x, *moduli = (getattr(self, name) for name in self.COLUMNS)
+        x, *moduli = ModuliRecord.__iter__(self)  # without the warning of DynamicModuli
         for modulus in moduli:
             axes.loglog(x, modulus, "o", markerfacecolor="none", markersize=4)
         if self.symbols:
@@ -477,15 +462,19 @@ class ModuliRecord(Result):
             f"{self.mode} ({', '.join(self.symbols)})" if self.symbols else self.mode,
         ]
         if (temperature := getattr(self, "temperature", None)) is not None:
-            low = np.min(temperature)
-            high = np.max(temperature)
-            words.append(f"{low:g} °C" if low == high else f"{low:g} to {high:g} °C")
-        given = (
-            f"{meaning} {heading!r} in {self.units.get(meaning, '1')}"
-            for meaning, heading in self.columns.items()
-        )
+            words.append(
+                f"{np.min(temperature):g} °C"
+                if np.ptp(temperature) == 0.0
+                else f"{np.min(temperature):g} to {np.max(temperature):g} °C"
+            )
         return f"{self.source or self.TITLE}: {', '.join(words)}", [
-            SummaryRow("columns", "; ".join(given)),
+            SummaryRow(
+                "columns",
+                "; ".join(
+                    f"{meaning} {heading!r} in {self.units.get(meaning, '1')}"
+                    for meaning, heading in self.columns.items()
+                ),
+            ),
             SummaryRow("notes", "; ".join(self.notes) or "no unused column"),
         ]
 
@@ -545,8 +534,9 @@ class DynamicModuli(ModuliRecord):
         """Geometric mean of the strains, dimensionless; None where the strain of a point is not
         known.
         """
-        known = self.strain is not None and bool((self.strain > 0.0).all())
-        return float(np.exp(np.log(self.strain).mean())) if known else None  # type: ignore[arg-type]
+        if self.strain is None or not (self.strain > 0.0).all():
+            return None
+        return float(np.exp(np.log(self.strain).mean()))
 
     def __iter__(self) -> Iterator[Floats]:
         """Return an iterator over omega, storage and loss, (n,) each, so that ``omega, storage,

@@ -35,10 +35,9 @@ ROLLING = "rolling"
 #: unknowns of a record
 OF_RECORDS: tuple[str, ...] = ("V0", "omega0", "t0")
 #: number of a record -> its lower bound
-_NUMBERS = {"load": 0.0, "m": 0.0, "temperature": ABSOLUTE_ZERO}
-_NUMBERS |= {"V0": -math.inf, "omega0": -math.inf}
+_LOWER = {"load": 0.0, "m": 0.0, "temperature": ABSOLUTE_ZERO, "V0": -math.inf, "omega0": -math.inf}
 #: name -> initial value, and range (of t0 as an array of two) where the record leaves it open
-InitialValues = dict[str, tuple[float, tuple[float, float] | None]]
+InitialValues = dict[str, tuple[float, Any]]
 #: relative tolerance of a free motion
 _RTOL = 1e-8
 #: relative tolerance of a driven motion: its outputs are smooth in the parameters to 2e-12 then
@@ -64,9 +63,9 @@ class Record:
     """
 
     #: names of places and of what may be measured there, the first what a plan is about
-    COORDINATES: ClassVar[tuple[str, ...]] = ()
-    QUANTITIES: ClassVar[tuple[str, ...]] = ()
-    LABEL: ClassVar[str] = ""
+    COORDINATES: ClassVar[tuple[str, ...]]
+    QUANTITIES: ClassVar[tuple[str, ...]]
+    LABEL: ClassVar[str]
 
     _: KW_ONLY
     sigma: Any = None
@@ -97,20 +96,33 @@ class Record:
         """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
-        names = (*self.COORDINATES, *self.measured)
         given = {
-            name: to_unit(self.label(name), getattr(self, name), self.unit(name)) for name in names
+            name: to_unit(self.label(name), getattr(self, name), self.unit(name))
+            for name in (*self.COORDINATES, *self.measured)
         }
         plain, labels = strip_labels(given, DIMENSIONLESS)
         arrays = {
             name: np.atleast_1d(check_array(self.label(name), value))
             for name, value in plain.items()
         }
-        for name, value in (sigma := self._sigmas()).items():
+        # a single sigma is of the quantity that was measured or, in a plan, of the first one
+        among = self.measured or self.QUANTITIES
+        sigma = self.sigma
+        if not isinstance(sigma, Mapping):
+            if sigma is not None and len(self.measured) > 1:
+                raise ParameterError(
+                    self.label("sigma"),
+                    f"{sigma!r:.40}",
+                    f"one for each quantity, as {{{': ..., '.join(map(repr, among))}: ...}}",
+                )
+            sigma = {among[0]: sigma}
+        check_names(self.label("sigma"), sigma, among, "a quantity of the record")
+        sigma = {name: value for name, value in sigma.items() if value is not None}
+        for name, value in sigma.items():
             label = f"sigma of {name}"
             arrays[label] = check_array(self.label(label), value, unit=self.unit(name), above=0.0)
         for name, array in arrays.items():
-            if not np.size(array):
+            if not array.size:
                 raise described_error(self.label(name), "is empty", "at least one number")
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
@@ -119,12 +131,13 @@ class Record:
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
         # by ``vars``, as the class is frozen
         vars(self).update(whole, labels=labels, sigma=sigmas)
-        for name, low in _NUMBERS.items():
+        for name, low in _LOWER.items():
             value = getattr(self, name, None)
             rolling = name == "omega0" and isinstance(value, str) and value == ROLLING
             if value is not None and not rolling:
-                label = self.label(name)
-                vars(self)[name] = check_number(label, value, unit=self.unit(name), above=low)
+                vars(self)[name] = check_number(
+                    self.label(name), value, unit=self.unit(name), above=low
+                )
 
     @staticmethod
     def unit(name: str) -> str:
@@ -170,27 +183,6 @@ class Record:
         """
         return f"{self.name or self.LABEL}: {name}"
 
-    def _sigmas(self) -> dict[str, Any]:
-        """Return the standard deviations by quantity, from a single one or from a mapping.
-
-        A single one (a number, or an array over the points) is of the quantity that is measured or,
-        in a plan, of the first of :attr:`QUANTITIES`.
-
-        Returns a dict, quantity -> standard deviation as given and not checked, a number, an array
-        or one with a unit; quantities without one are left out, {} where none is given.
-        Raises ParameterError for a single one where several quantities are measured, and for a
-        quantity that was not measured or, in a plan, that the record does not have.
-        """
-        among = self.measured or self.QUANTITIES
-        given = {} if self.sigma is None else self.sigma
-        if not isinstance(given, Mapping):
-            if len(self.measured) > 1:
-                allowed = f"one for each quantity, as {{{': ..., '.join(map(repr, among))}: ...}}"
-                raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
-            given = {among[0]: given}
-        check_names(self.label("sigma"), given, among, "a quantity of the record")
-        return {name: value for name, value in given.items() if value is not None}
-
     @property
     def measured(self) -> tuple[str, ...]:
         """Names of the quantities that the record has values of; none of a plan."""
@@ -201,8 +193,8 @@ class Record:
         """Inputs of the cylinder that the record replaces: "load" in N/m and "m" in kg/m -> number;
         {} where it has neither.
         """
-        numbers = {name: getattr(self, name, None) for name in ("load", "m")}
-        return {name: value for name, value in numbers.items() if value is not None}
+        given = (("load", self.load), ("m", getattr(self, "m", None)))
+        return {name: value for name, value in given if value is not None}
 
     def initial_values(self, R: float) -> InitialValues:
         """Return the start values V0, omega0 and t0 of the motion, which a fit may need;
@@ -293,9 +285,11 @@ class Resistance(Record):
         for name in self.measured:
             noise = 0.0 if self.sigma[name] is None else 3.0 * self.sigma[name]
             if (getattr(self, name) * np.sign(self.V) < -noise).all():
-                problem = "has at all points the sign opposite to V"
-                allowed = "of the sign of V, since it resists; reverse its sign in the data"
-                raise described_error(self.label(name), problem, allowed)
+                raise described_error(
+                    self.label(name),
+                    "has at all points the sign opposite to V",
+                    "of the sign of V, since it resists; reverse its sign in the data",
+                )
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict rolling moment and pulling force, the torque of the bearing included.
@@ -338,9 +332,8 @@ class Resistance(Record):
         array([0.1, 0.1])
         """
         V = np.asarray(self.V)
-        brake = values.get("brake", 0.0)
-        drag = values.get("drag", 0.0)
-        force = cylinder.steady(V=V, torque=-np.sign(V) * brake - drag * V / cylinder.R).force
+        drag = values.get("drag", 0.0) * V / cylinder.R
+        force = cylinder.steady(V=V, torque=-np.sign(V) * values.get("brake", 0.0) - drag).force
         # one equilibrium a speed; none where the bearing takes more torque than friction
         F = force.reshape(V.shape) if force.size else np.full(V.shape, np.nan)
         return {"M": F * cylinder.R, "F": F}
@@ -474,8 +467,9 @@ class Coastdown(Record):
             raise shape_error(self.label("t"), t.shape, "one list of times in ascending order")
         if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
             n = falls[0]
-            found = f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}"
-            raise ParameterError(self.label("t"), found, "in ascending order")
+            raise ParameterError(
+                self.label("t"), f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}", "in ascending order"
+            )
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
             raise ParameterError(self.label("t0"), self.t0, "a number, or a range (low, high)")
@@ -496,10 +490,9 @@ class Coastdown(Record):
             (low, high) of V0 and omega0 is a tuple, that of t0 an array, (2,), whose order is not
             checked here.  A t0 that is open starts at 0 limited to its range: low where low > 0,
             high where high < 0.  V0 and omega0 that are open start at the first measured value,
-            within the largest magnitude measured to either side.  Where V was not measured, V0
-            starts at R times the first omega, if omega0 is "rolling" and omega was measured, else
-            at the slope of the first tenth of x (at least three points, or all), within its
-            magnitude to either side.
+            within the largest magnitude measured to either side.  Where V was not measured, V0 is
+            R times the first omega, if omega0 is "rolling" and omega was measured, else the slope
+            of the first tenth of x (at least three points, or all), within its magnitude.
 
         Raises
         ------
@@ -513,38 +506,31 @@ class Coastdown(Record):
         >>> run.initial_values(R=0.1)
         {'t0': (0.0, None), 'V0': (2.0, (0.0, 4.0))}
         """
-        ends: Any = np.ravel(self.t0)
+        record: Any = self
+        ends = np.ravel(record.t0)
         found: InitialValues = {
             "t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)
         }
-        for name, value in (("V0", self.V0), ("omega0", self.omega0)):
-            if not isinstance(value, str):
-                found[name] = self._first(name, R) if value is None else (value, None)
+        speeds = record.V
+        if self.V0 is None and speeds is None:
+            if record.omega is not None and self.omega0 == ROLLING:
+                speeds = R * record.omega
+            elif record.x is not None:
+                some = slice(max(3, record.t.size // 10))
+                # [:1]: the slope, before the constant
+                speeds = np.polyfit(record.t[some], record.x[some], 1)[:1]
+        for name, value, data in (("V0", self.V0, speeds), ("omega0", self.omega0, record.omega)):
+            if value is None:
+                if data is None:
+                    raise ParameterError(
+                        self.label(name), None, "a number, since no data determine it"
+                    )
+                first = float(data[0])
+                most = float(np.abs(data).max())
+                found[name] = (first, (first - most, first + most))
+            elif not isinstance(value, str):
+                found[name] = (value, None)
         return found
-
-    def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
-        """Estimate the speed or the angular velocity at the release of the cylinder from the first
-        data, as :meth:`initial_values` states.
-
-        name : "V0" or "omega0".
-        R : radius of the cylinder, m; used only to make V of omega.
-        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s; the range has no
-        width where all data are 0.  Where the first times are all one, the slope is that of least
-        norm, with a RankWarning of numpy.
-        Raises ParameterError where none of these was measured.
-        """
-        data: Any = self.V if name == "V0" else self.omega
-        if data is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
-            data = R * np.asarray(self.omega)
-        if data is None and name == "V0" and self.x is not None:
-            some = slice(0, max(3, np.size(self.t) // 10))
-            # [:1]: the slope, before the constant
-            data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
-        if data is None:
-            raise ParameterError(self.label(name), None, "a number, since no data determine it")
-        first = float(data[0])
-        most = float(np.max(np.abs(data)))
-        return first, (first - most, first + most)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict V, omega and x, and for each point whether it is in full slip.
@@ -589,10 +575,15 @@ class Coastdown(Record):
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t = np.asarray(self.t) - t0
-        omega0 = (None if V0 is None else V0 / cylinder.R) if omega0 == ROLLING else omega0
+        if omega0 == ROLLING:
+            omega0 = V0 and V0 / cylinder.R  # None, an unknown V0, stays None
         drive = {name: values[name] for name in ("brake", "drag") if values.get(name)}
         motion = cylinder.roll(
             V0, omega0, np.maximum(t, 0.0), rtol=_RTOL_DRIVEN if drive else _RTOL, **drive
         )
-        slips = (motion.regime == 0) & (t >= 0.0)
-        return {"V": motion.V, "omega": motion.omega, "x": motion.x, "slips": slips}
+        return {
+            "V": motion.V,
+            "omega": motion.omega,
+            "x": motion.x,
+            "slips": (motion.regime == 0) & (t >= 0.0),
+        }

@@ -62,7 +62,7 @@ class Profile(NamedTuple):
     pieces : whether another branch continued the interval, inside which chi2 may exceed the bound.
     best : :class:`.least_squares.Minimum`, the point with the least chi2 that was met, perhaps
     below that of the best fit.
-    within : coordinates of all points met whose chi2 is at most the bound above that of the best
+    within : coordinates of all points met whose chi2 is less than the bound above that of the best
         fit, shape (k, unknowns), k >= 1, since the best fit is one of them.
     """
 
@@ -137,8 +137,8 @@ class Likelihood:
         """
         self.problem = problem
         self.best = found[0]
-        u, _ = found[0]
-        J = problem.weighted(u)[1]
+        u = self.best.u
+        _, J = problem.weighted(u)
         noise = problem.noise(u)
         repeats = np.ones(problem.points)
         for column in problem.columns:
@@ -157,6 +157,8 @@ class Likelihood:
             if np.abs(v - u).max() > _SAME
         ]
         self.ends: list[Floats] = []
+        # a row of it: the combination of one coordinate alone
+        self._unit = np.eye(u.size)
         self._profiles = cache(
             lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile()
         )
@@ -201,15 +203,12 @@ class Likelihood:
         coordinate, in ascending order of the indices; unknowns that do not act are not in it, so
         that it is {} where none acts.
         """
-        # a row of the unit matrix: the combination of one coordinate alone
-        found = {
-            i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active
-        }
+        found = {i: self.profile(self._unit[i], delta_chi2) for i in self.problem.active}
         if self.ends or not any(None in profile.ends for profile in found.values()):
             return found
         for i, profile in found.items():
             along = profile.within[:, i]
-            self.ends += [profile.within[np.argmin(along)], profile.within[np.argmax(along)]]
+            self.ends.extend(profile.within[[along.argmin(), along.argmax()]])
         self._profiles.cache_clear()  # they were made without the starts in ends
         return self.axes(delta_chi2)
 
@@ -229,10 +228,7 @@ class Likelihood:
         for i, profile in self.axes(delta_chi2).items():
             bounds = self.problem.low[i], self.problem.high[i]
             # an open side reaches to the end of the range
-            low, high = (
-                bound if end is None else end
-                for end, bound in zip(profile.ends, bounds, strict=True)
-            )
+            low, high = (bound if end is None else end for end, bound in zip(profile.ends, bounds))
             if high - low > min(_WIDE, 0.5 * (bounds[1] - bounds[0])):
                 wide.append(i)
         # the wide ones themselves too, whose correlation with themselves is 1
@@ -260,14 +256,19 @@ class Likelihood:
         """
         if len(which) < 2:
             return []
-        by_slopes = [*self._combinations_by_slopes(which)]
+        # the principal axes of the covariance, rounded to 0.01, that of the least variance first
+        by_slopes = [
+            np.round(v / v[np.abs(v).argmax()], 2) @ self._unit[which]
+            for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T
+        ]
         found = self._bounded_products(
             self._combinations_by_points(which, delta_chi2), delta_chi2
         ) or self._bounded_products(by_slopes, delta_chi2)
         least = min((product.high - product.low for product in found), default=math.inf)
-        near = self._bounded_products(by_slopes, delta_chi2, near=True)
         return found + [
-            product for product in near if product.high - product.low < _SHARPER * least
+            product
+            for product in self._bounded_products(by_slopes, delta_chi2, near=True)
+            if product.high - product.low < _SHARPER * least
         ]
 
     def _bounded_products(
@@ -291,31 +292,26 @@ class Likelihood:
         for powers in family:
             half = math.sqrt(delta_chi2 * (powers @ self.cov @ powers))
             centre = powers @ self.best.u
-            ends: list[Any] = [centre - half, centre + half]
-            limits: list[list[str]] = [[], []]
-            if not near:
-                ends, limits, *_ = self.profile(powers, delta_chi2)
-            low, high = ends
-            if low is None or high is None or high - low > _NARROW:
+            interval: Any = (
+                ([centre - half, centre + half], [[], []])
+                if near
+                else self.profile(powers, delta_chi2)
+            )
+            (low, high), limits, *_ = interval
+            if None in (low, high) or high - low > _NARROW:
                 break
             exponents = {
-                unknown.name: p * (values[unknown.name] / unknown.slope(values[unknown.name]))
-                for unknown, p in zip(self.problem.unknowns, powers.tolist(), strict=True)
+                unknown.name: p * (value / unknown.slope(value))
+                for unknown, value, p in zip(
+                    self.problem.unknowns, values.values(), powers.tolist()
+                )
                 if p
             }
             # low and high are factors of this value: the combination is ln(product) but for a
             # constant, to first order where a coordinate is no logarithm
             value = math.prod(abs(values[name]) ** p for name, p in exponents.items())
-            found.append(
-                Product(
-                    powers=exponents,
-                    value=value,
-                    low=math.exp(low - centre),
-                    high=math.exp(high - centre),
-                    near=near,
-                    limited_by=limits,
-                )
-            )
+            ends = math.exp(low - centre), math.exp(high - centre)
+            found.append(Product(exponents, value, *ends, near, limits))
         return found
 
     def _combinations_by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
@@ -339,24 +335,11 @@ class Likelihood:
         within = np.concatenate([axes[i].within for i in which])[:, which]
         # rows from the least singular value on: along these the points differ least
         for v in np.linalg.svd(within - within.mean(axis=0))[2][::-1]:
-            exact = v / v[np.argmax(np.abs(v))]
+            exact = v / v[np.abs(v).argmax()]
             rounded = (np.round(exact * parts) / parts for parts in _PARTS)
             width = _ROUNDING * np.ptp(within @ exact)
             powers = next((p for p in rounded if np.ptp(within @ p) <= width), np.round(exact, 2))
-            yield powers @ np.eye(self.best.u.size)[which]
-
-    def _combinations_by_slopes(self, which: list[int]) -> Iterator[Floats]:
-        """Yield combinations of unknowns by the principal axes of their covariance, the best
-        determined first.
-
-        which : indices of the unknowns among all, ascending.
-        Yields as many combinations as ``which`` has indices: powers of the coordinates, shape
-        (unknowns,), rounded to 0.01, that of largest absolute value 1, and those of unknowns
-        outside of ``which`` 0.
-        """
-        # columns by rising eigenvalue: that of the least variance first
-        for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
-            yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
+            yield powers @ self._unit[which]
 
 
 class ProfileWalk:
@@ -389,8 +372,9 @@ class ProfileWalk:
         self.powers = powers
         self.delta_chi2 = delta_chi2
         along = likelihood.cov @ powers
-        self.sd = math.sqrt(powers @ along)
-        self.slope = along / (powers @ along)
+        variance = powers @ along
+        self.sd = math.sqrt(variance)
+        self.slope = along / variance
         self.visited = [self.best]
 
     def distance(self, u: Floats) -> float:
@@ -422,20 +406,18 @@ class ProfileWalk:
         1e-5, or the best point that 30 evaluations found; its distance may differ from d where the
         ranges do not allow d.
         """
-        self.visited.append(
-            self.likelihood.minimize(self.shift_to(d, u).tobytes(), self.powers.tobytes())
-        )
-        return self.visited[-1]
+        found = self.likelihood.minimize(self.shift_to(d, u).tobytes(), self.powers.tobytes())
+        self.visited.append(found)
+        return found
 
-    def is_below(self, minimum: Minimum, part: float) -> bool:
+    def is_below(self, chi2: float, part: float) -> bool:
         """Return whether the rise of chi2 from the best minimum to another point is below part *
         ``delta_chi2``.
 
-        minimum : :class:`.least_squares.Minimum`, the other point with its chi2; only its chi2 is
-        used.
+        chi2 : that of the other point.
         part : factor of the bound, dimensionless, > 0.
         """
-        return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
+        return chi2 - self.best.chi2 < part * self.delta_chi2
 
     def profile(self) -> Profile:
         """Find both ends of the interval, by minima of chi2 with the combination fixed.
@@ -463,15 +445,8 @@ class ProfileWalk:
                 d, last = self.find_end(reach, lower[-1])
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
             limits.append([] if d is None else self.limiting_bounds(last.u))
-        best = self.best.chi2
-        within = np.array([each.u for each in self.visited if each.chi2 - best <= self.delta_chi2])
-        return Profile(
-            ends=ends,
-            limited_by=limits,
-            pieces=pieces,
-            best=min(self.visited, key=attrgetter("chi2")),
-            within=within,
-        )
+        within = np.array([each.u for each in self.visited if self.is_below(each.chi2, 1.0)])
+        return Profile(ends, limits, pieces, min(self.visited, key=attrgetter("chi2")), within)
 
     def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
         """Find the distance of the combination at which chi2 has risen to the bound.
@@ -513,7 +488,6 @@ class ProfileWalk:
             f = math.sqrt(max(found[d].chi2 - self.best.chi2, 0.0)) - goal
             return 0.0 if abs(f) < _CLOSE * goal else f
 
-        a = d
         f = excess(d)
         while f < 0.0:
             if abs(reach - d) < 1e-9:
@@ -558,9 +532,9 @@ class ProfileWalk:
                 (own - d) * (reach - d) > 0.0
             ):
                 cost = problem.cost(np.clip(self.shift_to(target, u), problem.low, problem.high))
-                if self.is_below(Minimum(u, cost), _HOPELESS):
+                if self.is_below(cost, _HOPELESS):
                     found.append(self.minimum_at(target, u))
-        lower = (minimum for minimum in found if self.is_below(minimum, _LOWER))
+        lower = (minimum for minimum in found if self.is_below(minimum.chi2, _LOWER))
         return sorted(lower, key=lambda minimum: abs(self.distance(minimum.u)))
 
     def limiting_bounds(self, u: Floats) -> list[str]:
@@ -579,7 +553,7 @@ class ProfileWalk:
         """
         problem = self.problem
         together = np.flatnonzero(self.powers)
-        bounds = self.problem.at_bounds(u)
+        bounds = problem.at_bounds(u)
         follows = next((i for i in together if i not in bounds), together[0])
         if not (at := [i for i in bounds if i in problem.active and i != follows]):
             return []
@@ -591,8 +565,4 @@ class ProfileWalk:
         J = J - np.outer(J[:, follows], self.powers / self.powers[follows])
         own = J[:, at] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, at], rcond=None)[0]
         gains = (r @ own) ** 2 / np.maximum((own**2).sum(axis=0), 1e-300)
-        return [
-            problem.names[i]
-            for i, gain in zip(at, gains, strict=True)
-            if gain > _LIMITS * self.delta_chi2
-        ]
+        return [problem.names[i] for i, gain in zip(at, gains) if gain > _LIMITS * self.delta_chi2]

@@ -5,15 +5,17 @@ storage, loss, tan delta and magnitude, with which a third is compared.
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from bisect import bisect
+from collections import defaultdict
+from collections.abc import Mapping
 from contextlib import suppress
-from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..core import (
     FileError,
+    FilePath,
     Floats,
     ParameterError,
     check_names,
@@ -27,6 +29,7 @@ from .dma_columns import (
     OF_SHEAR,
     QUANTITIES,
     UNITS,
+    ByQuantity,
     Column,
     columns_of,
     meanings,
@@ -41,13 +44,13 @@ from .text_table import Table, read_table
 
 #: pair of quantities -> function of both that returns storage and loss, the pairs that lose the
 #: fewest digits first
-PAIRS: dict[tuple[str, str], Callable[[Any, Any], tuple[Any, Any]]] = {
+PAIRS: dict[Any, Any] = {
     ("storage", "loss"): lambda storage, loss: (storage, loss),
     ("storage", "tan delta"): lambda storage, tan: (storage, storage * tan),
     ("loss", "tan delta"): lambda loss, tan: (loss / tan, loss),
     ("modulus", "tan delta"): lambda whole, tan: (
-        whole / np.hypot(1.0, tan),
-        whole / np.hypot(1.0, tan) * tan,
+        storage := whole / np.hypot(1.0, tan),
+        storage * tan,
     ),
     ("loss", "modulus"): lambda loss, whole: (np.sqrt(whole**2 - loss**2), loss),
     ("storage", "modulus"): lambda storage, whole: (storage, np.sqrt(whole**2 - storage**2)),
@@ -95,7 +98,7 @@ def storage_and_loss(
         other = exact["loss" if pair[0] == "storage" else "storage"]
         # of other^2 = modulus^2 - given^2 the relative error is at most modulus^2/other^2 times the
         # sum of those of both
-        rounding = rounding * (exact["modulus"] / other) ** 2
+        rounding *= (exact["modulus"] / other) ** 2
         table.require(
             rounding <= _ROUNDED,
             f"{both} (the magnitude) differ too little, for their number of digits, to give the "
@@ -103,9 +106,10 @@ def storage_and_loss(
         )
     for name in columns.keys() - set(pair):
         values, half = columns[name]
-        agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half
-        advice = f"{unit_advice(name)}, or remove one of these columns"
-        table.require(agrees, f"{name} contradicts {both}: {advice}")
+        table.require(
+            np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half,
+            f"{name} contradicts {both}: {unit_advice(name)}, or remove one of these columns",
+        )
     return storage, loss
 
 
@@ -144,8 +148,9 @@ _LIKE_TEMPERATURE = re.compile(
 )
 #: change of ln(modulus) of rows of one frequency that is more than that of repeated tests
 _SCATTER = 0.1
-#: base of logarithms -> their name
-_LOGARITHMS = {math.e: "ln", 2.0: "log2", 10.0: "log10"}
+#: tan delta that no rubber has at any frequency: that of damping rubbers in their glass transition
+#: is below
+_MOST_DAMPED = 3.0
 
 
 class Understood(NamedTuple):
@@ -167,10 +172,12 @@ class Understood(NamedTuple):
             "shear" if another heading is one of a test in shear, as "Torque" of rheometers, else
             "tension".
         """
-        beside = next((heading for heading in self.table.headings if OF_SHEAR.search(heading)), "")
-        mode = said or ("shear" if beside else "tension")
-        reason = f"the file has {beside!r}" if beside else "no heading says E or G"
-        return mode, [f"{mode} is assumed, since {reason}"] * (not said)
+        if said:
+            return said, []
+        for heading in self.table.headings:
+            if OF_SHEAR.search(heading):
+                return "shear", [f"shear is assumed, since the file has {heading!r}"]
+        return "tension", ["tension is assumed, since no heading says E or G"]
 
     def notes(self, taken: list[Column]) -> list[str]:
         """Return the notes on columns of logarithms, columns that are left out, and lines below the
@@ -179,32 +186,102 @@ class Understood(NamedTuple):
         taken : the columns that are read.
         """
         notes = [
-            f"{column.heading!r} is read as {_LOGARITHMS[column.log]}"
-            for column in taken
-            if column.log
+            f"{each.heading!r} is read as {'ln' if each.log == math.e else f'log{each.log:g}'}"
+            for each in taken
+            if each.log
         ]
         listed = ", ".join(
-            f"{heading!r}" + f" ({why})" * bool(why) for heading, why in self.others.items()
+            f"{heading!r}{f' ({why})' * bool(why)}" for heading, why in self.others.items()
         )
         notes += [f"unused columns: {listed}"] * bool(listed)
         below = [text for n, text in self.table.titles.items() if n > self.table.rows[-1].number]
         return notes + [f"lines below the rows are left out, as {quoted(below[:1])}"] * bool(below)
 
+    def numbers(self, alike: list[Column]) -> Numbers:
+        """Return the numbers of the first of several columns of one quantity, after a check that
+        the others agree with it.
 
-def missing(table: Table, test: str, problem: str, others: Mapping[str, str]) -> FileError:
-    """Return the error, not raised, of columns that are missing: the problem, headings, and advice.
+        Frequencies agree to 0.1 %, moduli and tan delta to 1 %, temperatures to 1 K, each beside
+        the rounding of the digits.
 
-    table : :class:`Table`, the table of the file.
-    test : "dma" or "relaxation".
-    problem : words on what is missing.
-    others : heading -> why the column is left out.
-    """
-    reasons = "".join(
-        f"; {heading!r} is unused, since {why}" for heading, why in others.items() if why
-    )
-    headings = ", ".join(repr(heading or f"column {n}") for n, heading in enumerate(table.headings))
-    advice = f"; {_NAME_THEM[test]}" * ("" in others.values() or not others)
-    return FileError(table.path, f"{problem}; the headings are {headings}{reasons}{advice}")
+        alike : list of :class:`Column`, the columns of one quantity
+            (:attr:`.dma_columns.Column.quantity`), as "frequency" or "storage", at least one.  All
+            but the first are added to ``others``.
+        Returns :class:`Numbers` of the first column: values, and half a unit of their last digits,
+        (n,) each, in rad/s, Pa, 1/Pa, degrees Celsius or, of tan delta, dimensionless.
+        Raises FileError with the line where two columns contradict each other, or where a cell is
+        no number, and for a unit that is missing and cannot be assumed.
+        """
+        best, *further = alike
+        first = numbers_of(self.table, best)
+        for column in further:
+            second = numbers_of(self.table, column)
+            # of temperatures an absolute difference: the zero of degrees Celsius has no meaning
+            allowed = (
+                SAME_TEMPERATURE
+                if best.name == "temperature"
+                else (_ROUND_PI if best.quantity.endswith("frequency") else AVERAGED)
+                * np.abs(first.values)
+            )
+            advice = "rename or remove one in the file"
+            if column.heading != best.heading:
+                advice = (
+                    f"choose by columns={{{best.name!r}: {best.heading!r}}} or "
+                    f"columns={{{column.name!r}: {column.heading!r}}}"
+                )
+            self.table.require(
+                np.abs(first.values - second.values) <= first.half + second.half + allowed,
+                f"{best.heading!r} and {column.heading!r} contradict each other: {advice}",
+            )
+            self.others[column.heading] = f"agrees with {best.heading!r}"
+        return first
+
+    def missing(self, test: str, problem: str) -> FileError:
+        """Return the error, not raised, of columns that are missing: the problem, headings, and
+        advice.
+
+        test : "dma" or "relaxation".
+        problem : words on what is missing.
+        """
+        reasons = "".join(
+            f"; {heading!r} is unused, since {why}" for heading, why in self.others.items() if why
+        )
+        headings = ", ".join(
+            repr(heading or f"column {n}") for n, heading in enumerate(self.table.headings)
+        )
+        advice = f"; {_NAME_THEM[test]}" * ("" in self.others.values() or not self.others)
+        return self.table.error(f"{problem}; the headings are {headings}{reasons}{advice}")
+
+    def refuse_unread_temperatures(self) -> None:
+        """Refuse a column that is left out and seems to be of several temperatures, of which a
+        sweep would be made one.
+
+        It is such a column if its unit is one of temperature, or its heading is like one, and its
+        values span more than 1 K.
+
+        Raises FileError with advice.
+        """
+        table = self.table
+        for index, heading in enumerate(table.headings):
+            if heading in self.others and table.has_numbers(index):
+                # kelvins of one unit of the column; without a unit those of degrees Celsius
+                factor = max(
+                    (
+                        _kelvins(each.unit)
+                        for each in readings(heading, table.units[index])
+                        if each.unit not in NO_UNIT and (each.sure or "°" in each.unit)
+                    ),
+                    default=bool(_LIKE_TEMPERATURE.match(heading)),
+                )
+                spread = np.inf
+                with suppress(FileError):
+                    spread = factor * np.ptp(table.numbers(index).values)
+                if factor and spread > SAME_TEMPERATURE:
+                    raise table.error(
+                        f"column {heading!r} looks like temperatures, but is not read: name it by "
+                        f"columns={{'temperature': {heading!r}}}, or remove it if these are not "
+                        "those of the sample"
+                    )
 
 
 def quoted(lines: list[str]) -> str:
@@ -213,12 +290,7 @@ def quoted(lines: list[str]) -> str:
 
 
 def understand(
-    path: str | PathLike[str],
-    test: str,
-    columns: Any,
-    units: Any,
-    decimal: str | None,
-    encoding: str | None,
+    path: FilePath, test: str, columns: Any, units: Any, decimal: str | None, encoding: str | None
 ) -> Understood:
     """Read the table of a file, and find the quantities of its columns.
 
@@ -237,12 +309,22 @@ def understand(
     bare = BARE[test]
     check_names("columns", named, known, "a quantity")
     overruling, defaults = _units(units, test)
+
+    def is_heading_line(cells: list[str]) -> bool:
+        """Return whether the texts of the ``cells`` of a line, with units or without, name at least
+        two different known quantities, or one of them is a heading that the user gave.
+        """
+        quantities = {found[0].name for cell in cells if (found := meanings(cell))}
+        return len(quantities.intersection(known)) > 1 or any(
+            cell in named.values() for cell in cells if cell
+        )
+
     table = read_table(
         path,
-        lambda cells: _is_heading_line(cells, named, known),
-        decimal=decimal,
-        encoding=encoding,
-        is_title=lambda text: bool(_IN_DEGREES.search(text) or _NAMED.search(text)),
+        is_heading_line,
+        decimal,
+        encoding,
+        is_title=lambda text: _IN_DEGREES.search(text) or _NAMED.search(text),
     )
     if table.without_headings and not named:
         if len(table.headings) != len(bare):
@@ -253,13 +335,13 @@ def understand(
                 f"have the headings {', '.join(map(repr, table.headings))} here, "
                 f"{_NAME_THEM[test]}",
             )
-        named = dict(zip(bare, table.headings, strict=True))
-    found, others = columns_of(table, test, named=named, overruling=overruling, defaults=defaults)
+        named = dict(zip(bare, table.headings))
+    found, others = columns_of(table, test, named, overruling, defaults)
     check_names("units", overruling, [column.name for column in found], "a quantity of the file")
     return Understood(table, found, others)
 
 
-def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
+def _units(units: Any, test: str) -> tuple[ByQuantity, ByQuantity]:
     """Split the argument ``units`` into units that replace those of the file and units for columns
     that have none.
 
@@ -276,14 +358,15 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     by_name = isinstance(units, Mapping)
     known = QUANTITIES[test]
     first = BARE[test][0]
-    allowed = (
-        f"(unit of {first.split()[-1]}, of moduli), as ({UNITS[first]!r}, 'MPa'), or a dict, as "
-        f"{{{first!r}: {UNITS[first]!r}}}"
-    )
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
-        raise ParameterError("units", describe_value(units), allowed)
+        raise ParameterError(
+            "units",
+            describe_value(units),
+            f"(unit of {first.split()[-1]}, of moduli), as ({UNITS[first]!r}, 'MPa'), or a dict, "
+            f"as {{{first!r}: {UNITS[first]!r}}}",
+        )
     # each of the two is for all quantities that are converted to the same unit
-    of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
+    of_two = zip((UNITS[first], "Pa"), units or ())
     pairs = (
         dict(units)
         if by_name
@@ -300,69 +383,9 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     return (pairs, {}) if by_name else ({}, pairs)
 
 
-def _is_heading_line(cells: list[str], named: Mapping[str, str], known: list[str]) -> bool:
-    """Return whether a line of the file is the one with the headings, which :func:`.read_table`
-    looks for.
-
-    It is if its cells name at least two different known quantities, or if a cell is a heading that
-    the user gave.
-
-    cells : texts of the cells of the line, with units or without.
-    named : quantity -> heading, the argument ``columns`` of :func:`.dma_reader.read_dma`; empty
-    where the user named none.
-    known : quantities of the test.
-    """
-    quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
-    return len(quantities.intersection(known)) > 1 or not set(named.values()).isdisjoint(
-        filter(None, cells)
-    )
-
-
-def agreeing_numbers(
-    table: Table, quantity: str, alike: list[Column], others: dict[str, str]
-) -> Numbers:
-    """Return the numbers of the first of several columns of one quantity, after a check that the
-    others agree with it.
-
-    Frequencies agree to 0.1 %, moduli and tan delta to 1 %, temperatures to 1 K, each beside the
-    rounding of the digits.
-
-    table : :class:`Table`, the table that has the columns.
-    quantity : name of their quantity (:attr:`.dma_columns.Column.quantity`), as "frequency"
-    or "storage".
-    alike : list of :class:`Column`, the columns of this quantity, at least one.
-    others : heading -> why the column is left out.  It is changed: all columns but the first are
-    added.
-    Returns :class:`Numbers` of the first column: values, and half a unit of their last digits, (n,)
-    each, in rad/s, Pa, 1/Pa, degrees Celsius or, of tan delta, dimensionless.
-    Raises FileError with the line where two columns contradict each other, or where a cell is no
-    number, and for a unit that is missing and cannot be assumed.
-    """
-    first = numbers_of(table, alike[0])
-    for column in alike[1:]:
-        second = numbers_of(table, column)
-        # of temperatures an absolute difference: the zero of degrees Celsius has no meaning
-        allowed = (
-            SAME_TEMPERATURE
-            if quantity == "temperature"
-            else (_ROUND_PI if quantity.endswith("frequency") else AVERAGED) * np.abs(first.values)
-        )
-        agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
-        same = column.heading == alike[0].heading
-        choices = " or ".join(
-            f"columns={{{each.name!r}: {each.heading!r}}}" for each in (alike[0], column)
-        )
-        advice = "rename or remove one in the file" if same else f"choose by {choices}"
-        table.require(
-            agrees, f"{alike[0].heading!r} and {column.heading!r} contradict each other: {advice}"
-        )
-        others[column.heading] = f"agrees with {alike[0].heading!r}"
-    return first
-
-
 def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> None:
-    """Warn, by one ModelWarning, of frequencies and moduli whose unit neither the file nor the user
-    gives.
+    """Warn of units that neither the file nor the user gives: by one ModelWarning of frequencies
+    and moduli, by another of a tan delta above 3, which no rubber has: it may be in per cent.
 
     Temperatures, phase angles and compliances are not examined here.  There is no warning where all
     units are given.
@@ -373,27 +396,34 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
     Raises FileError for a modulus without a unit beside one that has it, and for a frequency
     likewise.
     """
-    assumed: dict[str, str] = {}
-    for unit in ("rad/s", "s", "Pa"):
-        alike = [column for column in taken if UNITS[column.name] == unit]
-        without = [column for column in alike if not column.stated]
-        if without and len(without) < len(alike):
-            raise FileError(
-                table.path,
-                f"column {without[0].heading!r} has no unit, but others like it do: "
-                f"{unit_advice(without[0].name)}",
+    assumed = [
+        column
+        for unit in ("rad/s", "s", "Pa")
+        for column in taken
+        if UNITS[column.name] == unit and not column.stated
+    ]
+    for column in assumed:
+        if any(each.stated and UNITS[each.name] == UNITS[column.name] for each in taken):
+            raise table.error(
+                f"column {column.heading!r} has no unit, but others like it do: "
+                f"{unit_advice(column.name)}"
             )
-        assumed |= {column.name: column.unit for column in without}
     if assumed:
-        text = f"{table.path}: columns without a unit are taken as with units={assumed}"
-        doubt = (
-            f"; a rubber has more than {moduli.max():g} Pa: are moduli in MPa, or logarithms?"
-            * bool(moduli.max() < SOFTEST)
-        )
+        units = {column.name: column.unit for column in assumed}
+        doubt = f"; a rubber has more than {moduli.max():g} Pa: are moduli in MPa, or logarithms?"
         warn_of_model(
-            f"{text}: write the units into the file, or give units= with yours (in a shell: "
-            f"--units){doubt}"
+            f"{table.path}: columns without a unit are taken as with units={units}: write the "
+            "units into the file, or give units= with yours (in a shell: --units)"
+            f"{doubt * bool(moduli.max() < SOFTEST)}"
         )
+    for column in taken:
+        if column.name == "tan delta" and not (column.stated or column.log):
+            most = numbers_of(table, column).values.max()
+            if most > _MOST_DAMPED:
+                warn_of_model(
+                    f"{table.path}: tan delta is up to {most:g}, above that of any rubber: "
+                    f"{unit_advice(column.name)}, or '1' in place of '%' if it is no per cent"
+                )
 
 
 def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None:
@@ -432,94 +462,53 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     Raises FileError for a block above which not exactly one temperature is stated, as also in "20
     to 60 °C".
     """
-    numbers = np.array([row.number for row in table.rows])
+    numbers = [row.number for row in table.rows]
     commas = table.decimal != "," and "," in table.rows[0].text
-    lines: dict[int, dict[str, float]] = {}
+    lines: dict[int, dict[str, float | None]] = defaultdict(dict)
     for n, text in table.titles.items():
         found = _IN_DEGREES.findall(text) or _NAMED.findall(text)
         if found and n < numbers[-1]:
-            values = {
-                _celsius(number, unit, bool(low) or (commas and "," in number))
-                for low, number, unit in found
-            }
+            values = {_celsius(commas, *each) for each in found}
             # the line without its numbers, by which a line of the preamble is known as one of them
             wording = re.sub(r"[\d.,+-]", "", text)
             # by the index of the first row below the line
-            lines.setdefault(int(np.searchsorted(numbers, n)), {})[wording] = (
-                values.pop() if len(values) == 1 else np.nan
-            )
+            lines[bisect(numbers, n)][wording] = values.pop() if len(values) == 1 else None
     if not lines.keys() - {0}:
         return None
-    starts = sorted({*lines, *np.searchsorted(numbers, table.starts).tolist()})
-    second = lines.get(starts[1], {})  # starts[0] is 0, the block below the preamble
-    lines[0] = {wording: value for wording, value in lines.get(0, {}).items() if wording in second}
-    temperature = np.empty(numbers.size)
+    starts = sorted({*lines, *map(numbers.index, table.starts)})
+    # starts[0] is 0, the block below the preamble
+    for wording in lines[0].keys() - lines[starts[1]]:
+        del lines[0][wording]
+    temperature = np.empty(len(numbers))
     for start in starts:
-        values = {*lines.get(start, {}).values()}
-        if len(values) != 1 or np.isnan([*values]).any():
-            raise FileError(
-                table.path,
+        values = {*lines[start].values()}
+        if len(values) != 1 or None in values:
+            raise table.error(
                 f"the rows from line {numbers[start]} on need a line above them with one "
-                "temperature, as 'Temperature 20 °C'",
+                "temperature, as 'Temperature 20 °C'"
             )
         temperature[start:] = values.pop()  # blocks below overwrite theirs
     return temperature
 
 
-def _celsius(number: str, unit: str, in_doubt: bool) -> float:
-    """Return a temperature in a line in degrees Celsius, NaN where it is in doubt.
+def _celsius(commas: bool, low: str, number: str, unit: str) -> float | None:
+    """Return a temperature in a line in degrees Celsius, None where it is in doubt.
 
+    commas : whether commas separate cells, so that one in the number makes it doubtful.
+    low : text before it that makes it the end of a range, as "20 to "; "" without.
     number : digits, with a decimal point or comma.
     unit : its unit as the file spells it, "" without, which is degrees Celsius unless the number is
     above 200.
-    in_doubt : whether the text around it makes it so.
     """
     value = float(number.replace(",", "."))
-    if in_doubt or (not unit and value > KELVIN):
-        return np.nan
+    if low or (commas and "," in number) or (not unit and value > KELVIN):
+        return None
     factor, offset = conversion(unit or "degC", "degC")
     return factor * value + offset
-
-
-def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
-    """Refuse a column that is left out and seems to be of several temperatures, of which a sweep
-    would be made one.
-
-    It is such a column if its unit is one of temperature, or its heading is like one, and its
-    values span more than 1 K.
-
-    table : :class:`Table`, the table of the file.
-    others : heading -> why it is left out.
-    Raises FileError with advice.
-    """
-    for index, heading in enumerate(table.headings):
-        if heading in others and table.has_numbers(index):
-            ways = readings(heading, table.units[index])
-            units = [
-                each.unit
-                for each in ways
-                if each.unit not in NO_UNIT and (each.sure or "°" in each.unit)
-            ]
-            # kelvins of one unit of the column; without a unit those of degrees Celsius
-            factor = (
-                max(map(_kelvins, units))
-                if units
-                else float(bool(_LIKE_TEMPERATURE.match(heading)))
-            )
-            spread = np.inf
-            with suppress(FileError):
-                spread = factor * np.ptp(table.numbers(index).values)
-            if factor and spread > SAME_TEMPERATURE:
-                raise FileError(
-                    table.path,
-                    f"column {heading!r} looks like temperatures, but is not read: name it by "
-                    f"columns={{'temperature': {heading!r}}}, or remove it if these are not those "
-                    "of the sample",
-                )
 
 
 def _kelvins(unit: str) -> float:
     """Return how many kelvins a unit of temperature is, 0 of another unit."""
     with suppress(ParameterError):
-        return conversion(unit or "1", "degC")[0]
+        return conversion(unit, "degC")[0]
     return 0.0

@@ -10,13 +10,12 @@ from collections import Counter
 from contextlib import suppress
 from decimal import Decimal
 from importlib.resources import files
-from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ..core import FileError, Floats, ParameterError, as_file_error, conversion_factor
+from ..core import FileError, FilePath, Floats, ParameterError, as_file_error, conversion_factor
 
 # --- Cells of a table ---
 
@@ -37,8 +36,6 @@ _MARKS = {
     ".": " with a decimal point; correct it, or give decimal=','",
     ",": " with a decimal comma; correct it, or give decimal='.'",
 }
-#: largest power of ten of a last digit: doubles end at 1e308
-_MOST = 300
 
 
 class Numbers(NamedTuple):
@@ -128,7 +125,8 @@ def numbers_of(cells: list[str]) -> Numbers:
     """
     exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
     # the exponent of a Decimal is the power of ten of its last digit: -2 of 0.25, 3 of 1e3
-    half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]
+    # of the largest ones no more than 300, as doubles end at 1e308
+    half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), 300) for number in exact]
     return Numbers(np.array(exact, np.float64), np.array(half))
 
 
@@ -139,17 +137,16 @@ SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": 
 #: mark of a comment at the beginning of a line; none is a first cell of a mark alone: "%" is a
 #: unit, "#" a point number
 _COMMENT = r"^[^\S{0}]*(?:[#%!]+|//)[^\S{0}]*(?=[^\s{0}]|$)"
-#: lines of a file by which its separator is found: enough to outvote a preamble
-_SAMPLE = 2000
 #: first bytes of a file and the encoding that they show: byte order marks, or a null beside a
 #: letter
 _ENCODINGS = {rb"\xff\xfe|\xfe\xff": "utf-16", rb"(?s).\0": "utf-16-le", rb"\0": "utf-16-be"}
 #: encodings that are tried without such bytes: that of today, that of Windows, and one that has all
 #: bytes
 _USUAL = ("utf-8-sig", "cp1252", "latin-1")
-#: encoding of Windows in Japan, and what shows it: three characters in a row of two bytes each, of
-#: which the first is a sign of typography in cp1252
-_JAPANESE = ("utf-8-sig", "cp932")
+#: the same with that of Windows in Japan, before encodings that almost any bytes fit, and what
+#: shows it: three characters in a row of two bytes each, of which the first is a sign of typography
+#: in cp1252
+_JAPANESE = ("utf-8-sig", "cp932", "cp1252", "latin-1")
 _KANJI = re.compile(rb"(?:[\x81-\x9f][\x40-\x7e\x80-\xfc]){3}")
 #: first bytes of Excel's workbooks, of today and of before 2007
 _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
@@ -172,7 +169,7 @@ class Line(NamedTuple):
     numeric: bool
 
 
-def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
+def read_lines(path: FilePath, encoding: str | None) -> list[str]:
     """Return the lines of a text file, without their ends.
 
     Minus signs of typography become "-"; a first line "sep=;" of Excel becomes empty, so that line
@@ -192,11 +189,9 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
         raw = Path(path).read_bytes()
     if raw.startswith(_WORKBOOKS):
         raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
-    shown = (name for first, name in _ENCODINGS.items() if re.match(first, raw))
-    given = encoding or next(shown, None)
-    # cp932 after UTF-8, before encodings that almost any bytes fit
-    usual = _JAPANESE + _USUAL[1:] if _KANJI.search(raw) else _USUAL
-    for name in (given,) if given else usual:
+    shown = [name for first, name in _ENCODINGS.items() if re.match(first, raw)]
+    usual = _JAPANESE if _KANJI.search(raw) else _USUAL
+    for name in [encoding] if encoding else shown[:1] or usual:
         try:
             text = raw.decode(name).removeprefix("\ufeff").replace("\u2212", "-")
         except (LookupError, TypeError):
@@ -240,15 +235,8 @@ def cut_lines(text: list[str], separator: str) -> list[Line]:
             line = plain[number - 1]
             comment = line != text[number - 1]  # a mark was taken off
             if any(cells):
-                found.append(
-                    Line(
-                        number=number,
-                        text=line.strip(),
-                        cells=cells,
-                        comment=comment,
-                        numeric=not comment and is_row_of_numbers(cells),
-                    )
-                )
+                numeric = not comment and is_row_of_numbers(cells)
+                found.append(Line(number, line.strip(), cells, comment, numeric))
     return found
 
 
@@ -261,18 +249,23 @@ def separator_of(text: list[str], decimal: str | None) -> str:
     """Return the separator that cuts most lines into rows of numbers of one width, of two cells and
     more.
 
-    text : lines of a file, without their ends, of which the first 2000 are examined.
+    text : lines of a file, without their ends, of which the first 2000 are examined: enough to
+        outvote a preamble.
     decimal : the decimal mark, "." or ",", which is then not tried as a separator; None: not given.
     Returns a key of :data:`SEPARATORS`, the first of several that give as many rows; a tab where
     none gives any, as in a file with a single column.
     """
-
-    def count(separator: str) -> int:
-        rows = (line.cells for line in cut_lines(text[:_SAMPLE], separator) if line.numeric)
-        # rows of the most frequent width
-        return max(Counter(len(cells) for cells in rows if len(cells) > 1).values(), default=0)
-
-    return max((separator for separator in SEPARATORS if separator != decimal), key=count)
+    # separator -> number of cells of a row -> how many rows have as many
+    widths = {
+        separator: Counter(
+            len(line.cells)
+            for line in cut_lines(text[:2000], separator)
+            if line.numeric and len(line.cells) > 1
+        )
+        for separator in SEPARATORS
+        if separator != decimal
+    }
+    return max(widths, key=lambda separator: max(widths[separator].values(), default=0))
 
 
 # --- A heading of a column ---
@@ -298,18 +291,11 @@ MULTIPLIED = re.compile(
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
 _POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!\d)[)}]?")
-#: rounding of factors of conversion
-_ROUNDING = 1e-9
-#: longest text that may be a unit
-_LONGEST = 24
-#: unit in small letters and without blanks, degrees and points -> unit of pint, read from
-#: units.toml
+#: words of headings in seven languages, the quantities that they mean, and spellings of units
+DATA = tomllib.loads((files(__package__) / "headings.toml").read_text(encoding="utf-8"))
+#: unit in small letters and without blanks, degrees and points -> unit of pint
 _SPELLINGS = {
-    spelling: unit
-    for unit, spellings in tomllib.loads(
-        (files(__package__) / "units.toml").read_text(encoding="utf-8")
-    ).items()
-    for spelling in spellings.split()
+    spelling: unit for unit, spellings in DATA["units"].items() for spelling in spellings.split()
 }
 #: brackets and slash of Japanese keyboards
 _WIDE = str.maketrans("（）［］【】／", "()[][]/")
@@ -329,8 +315,8 @@ class Reading(NamedTuple):
 
     name: str
     unit: str
-    log: float = 0.0
-    sure: bool = False
+    log: float
+    sure: bool
     mode: str = ""
 
 
@@ -352,8 +338,7 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     heading = _LOG_BEHIND.sub(r"\2 \1", heading.translate(_WIDE))
     if found := _LOGARITHM.fullmatch(heading.strip()):
         heading = found["of"]
-        natural = found["kind"].lower() in ("ln", "loge")
-        log = math.e if natural else float(found["base"] or 10.0)
+        log = math.e if found["kind"].lower() in ("ln", "loge") else float(found["base"] or 10.0)
         if inner := _PARENTHESES.fullmatch(heading):
             heading = f"{inner[1]} {inner[2]}".rstrip()
     ways = [(heading, "", False)]
@@ -369,7 +354,7 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     differing = next((f"{unit} and {row}" for _, unit, _ in ways if _differ(unit, row)), "")
     return [
         Reading(
-            " ".join(name.split()), differing or unit or row, log, sure or (not unit and bool(row))
+            " ".join(name.split()), differing or unit or row, log, sure or bool(row and not unit)
         )
         for name, unit, sure in ways
         if name
@@ -383,13 +368,11 @@ def _differ(unit: str, row: str) -> bool:
     unit, row : texts of both.  Texts that are no unit, and units of two dimensions, are not
         compared: in "Temperature (T)" above "°C" the T is a symbol.
     """
-    if not (may_be_unit(unit) and may_be_unit(row)):
-        return False
-    try:
-        factor, offset = conversion(unit, row)
-    except ParameterError:
-        return False
-    return abs(factor - 1.0) + abs(offset) > _ROUNDING
+    if may_be_unit(unit) and may_be_unit(row):
+        with suppress(ParameterError):
+            # beyond the rounding of factors of conversion
+            return math.dist(conversion(unit, row), (1.0, 0.0)) > 1e-9
+    return False
 
 
 def may_be_unit(text: str) -> bool:
@@ -403,7 +386,7 @@ def may_be_unit(text: str) -> bool:
     """
     rest = _POWERS.sub("", re.sub(r"^\s*1\s*/", "", text))
     return (
-        0 < len(text.strip()) <= _LONGEST
+        0 < len(text.strip()) <= 24
         and not re.search(r"[\d^]|\*\*", rest)
         and bool(re.search(r"[A-Za-z%°℃º]", text))
     )

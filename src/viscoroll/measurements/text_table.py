@@ -4,15 +4,12 @@
 """
 
 import re
-from collections import Counter
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
-from os import PathLike
-from typing import Any
+from itertools import pairwise
+from statistics import mode
+from typing import Any, NamedTuple
 
-import numpy as np
-
-from ..core import FileError, ParameterError, is_unit, suggestion
+from ..core import FileError, FilePath, ParameterError, is_unit, suggestion
 from .text_cells import (
     NO_UNIT,
     SEPARATORS,
@@ -38,14 +35,11 @@ _PHRASE = re.compile(
     r"(?i)\s+(?=[\[(])|(?<=\bstorage)\s+|(?<=\bloss)\s+|(?<=\bangular)\s+|(?<=\bcomplex)\s+|(?<=\btan)\s+(?=d)"
     r"|(?<=\bphase)\s+|(?<=\breduced)\s+|(?<=\belastic)\s+|(?<=\bviscous)\s+|(?<=\bpoint)\s+(?=no)"
 )
-#: least number of numbers of a row
-_FEWEST = 2
-#: characters of a line that a message quotes
-_QUOTED = 60
+#: function of the cells of a line that returns whether they are headings
+HeadingTest = Callable[[list[str]], bool]
 
 
-@dataclass(frozen=True)
-class Table:
+class Table(NamedTuple):
     """A table of a text file.
 
     path : path of the file.
@@ -60,7 +54,7 @@ class Table:
     titles : number -> text of the lines that are neither rows nor headings, nor blank.
     """
 
-    path: str | PathLike[str]
+    path: FilePath
     headings: list[str]
     units: list[str]
     rows: list[Line]
@@ -68,6 +62,10 @@ class Table:
     without_headings: bool
     decimal: str
     titles: dict[int, str]
+
+    def error(self, problem: str) -> FileError:
+        """Return the error, not raised, of the file with a ``problem``."""
+        return FileError(self.path, problem)
 
     def has_numbers(self, column: int) -> bool:
         """Return whether any cell of the column with an index is a number."""
@@ -86,21 +84,18 @@ class Table:
         cells = [row.cells[column] for row in self.rows]
         # beside "567" a "1.234" may be the next thousand
         threes = any(len(cell) == 3 and cell.isdigit() for cell in cells)
-        decimal = self.decimal if decimal_mark(cells, ",." * threes) else ""
-        for row, cell in zip(self.rows, cells, strict=True):
+        decimal = decimal_mark(cells, ",." * threes) and self.decimal
+        for row, cell in zip(self.rows, cells):
             if fault := fault_of(cell, decimal):
-                raise FileError(
-                    self.path,
-                    f"line {row.number}, column {self.headings[column]!r}: {cell!r} {fault}",
+                raise self.error(
+                    f"line {row.number}, column {self.headings[column]!r}: {cell!r} {fault}"
                 )
         return numbers_of(cells)
 
     def refuse_several(self) -> None:
         """Raise FileError for a file with several tables."""
         if len(self.starts) > 1:
-            raise FileError(
-                self.path, f"has {len(self.starts)} tables: keep one of them in the file"
-            )
+            raise self.error(f"has {len(self.starts)} tables: keep one of them in the file")
 
     def require(self, holds: Any, problem: str) -> None:
         """Raise FileError, with the number and the cells of its line, for the first row for which a
@@ -110,17 +105,16 @@ class Table:
         problem : words on the fault where it does not hold, which end the message.
         """
         if not holds.all():
-            row = self.rows[int(np.argmin(holds))]
-            raise FileError(self.path, f"line {row.number} ({'; '.join(row.cells):.60}): {problem}")
+            row = self.rows[holds.argmin()]
+            raise self.error(f"line {row.number} ({'; '.join(row.cells):.60}): {problem}")
 
 
 def read_table(
-    path: str | PathLike[str],
-    is_heading_line: Callable[[list[str]], bool],
-    *,
+    path: FilePath,
+    is_heading_line: HeadingTest,
     decimal: str | None,
     encoding: str | None,
-    is_title: Callable[[str], bool] = lambda text: False,
+    is_title: Callable[[str], Any] = lambda text: False,
     footers: bool = True,
 ) -> Table:
     """Read the table of a text file, which may have a preamble, comments, and several tables with
@@ -169,87 +163,73 @@ def read_table(
     lines = [
         line._replace(
             numeric=line.numeric
-            and not (sum(map(is_number, line.cells)) < _FEWEST and is_title(line.text))
+            and not (sum(map(is_number, line.cells)) < 2 and is_title(line.text))
         )
         for line in cut_lines(text, separator)
     ]
+    widths = [len(line.cells) for line in lines if line.numeric]
+    if not widths:
+        raise FileError(
+            path,
+            "has no row of numbers: write columns of numbers, separated by tabs, semicolons, bars, "
+            "commas or blanks",
+        )
     layout = _Layout(
-        path=path,
-        lines=lines,
-        separator=separator,
-        is_heading_line=is_heading_line,
-        is_title=is_title,
-        footers=footers,
+        path,
+        lines,
+        separator,
+        mode(widths),
+        f"separated by {SEPARATORS[separator]}",
+        is_heading_line,
+        is_title,
+        footers,
     )
     heads = layout.heads()
-    parts = [layout.part(*ends) for ends in zip(heads, [*heads[1:], len(lines)], strict=True)]
-    names, units, (first, *_) = parts[0]
+    parts = [layout.part(*ends) for ends in pairwise([*heads, len(lines)])]
+    headings, units, _ = parts[0]
     starts = [rows[0].number for *_, rows in parts]
-    if any(part[:2] != (names, units) for part in parts):
+    if any(part[:2] != (headings, units) for part in parts):
         raise FileError(
             path,
             f"has {len(parts)} tables with different headings (their rows begin in lines "
             f"{', '.join(map(str, starts))}): keep one of them in the file",
         )
     rows = [row for *_, rows in parts for row in rows]
-    mark = decimal or decimal_mark(
-        [cell for row in rows for cell in row.cells], "," if separator == "," else ""
-    )
     known = {line.number for line in (*rows, *(lines[head] for head in heads))}
     titles = {n: line for n, line in enumerate(text, 1) if n not in known and line.strip()}
-    return Table(
-        path=path,
-        headings=names,
-        units=units,
-        rows=rows,
-        starts=starts,
-        without_headings=lines[heads[0]].number == first.number,
-        decimal=mark,
-        titles=titles,
+    decimal = decimal or decimal_mark(
+        [cell for row in rows for cell in row.cells], "," if separator == "," else ""
     )
+    without_headings = lines[heads[0]].number == starts[0]
+    return Table(path, headings, units, rows, starts, without_headings, decimal, titles)
 
 
-@dataclass
-class _Layout:
+class _Layout(NamedTuple):
     """Where the tables of a file are: their lines of headings, rows of units and rows of numbers.
 
     path : path of the file.
     lines : lines of the file with their cells.
     separator : separator of the cells, a key of ``SEPARATORS``.
-    is_heading_line, is_title, footers : as in :func:`read_table`.
-    width : most frequent number of cells of rows of numbers.
+    width : most frequent number of cells of rows of numbers, of several that are as frequent the
+        one that occurs first.
     cut : words on the separator, for messages.
+    is_heading_line, is_title, footers : as in :func:`read_table`.
     """
 
-    path: str | PathLike[str]
+    path: FilePath
     lines: list[Line]
     separator: str
-    is_heading_line: Callable[[list[str]], bool]
-    is_title: Callable[[str], bool]
+    width: int
+    cut: str
+    is_heading_line: HeadingTest
+    is_title: Callable[[str], Any]
     footers: bool
-
-    def __post_init__(self) -> None:
-        """Set ``width``, the most frequent number of cells of rows of numbers, and ``cut``, the
-        words on the separator.
-
-        Of several numbers of cells that are as frequent the one that occurs first is taken.
-        Raises FileError where no line is a row of numbers.
-        """
-        widths = Counter(len(line.cells) for line in self.lines if line.numeric)
-        if not widths:
-            raise FileError(
-                self.path,
-                "has no row of numbers: write columns of numbers, separated by tabs, semicolons, "
-                "bars, commas or blanks",
-            )
-        self.width = widths.most_common(1)[0][0]
-        self.cut = f"separated by {SEPARATORS[self.separator]}"
 
     def fault(self, line: Line, problem: str) -> FileError:
         """Return the error, not raised, that names a ``line``, states a ``problem`` and quotes 60
         characters of it.
         """
-        return FileError(self.path, f"line {line.number} ({line.text[:_QUOTED]!r}) {problem}")
+        return FileError(self.path, f"line {line.number} ({line.text[:60]!r}) {problem}")
 
     def is_row(self, line: Line) -> bool:
         """Return whether a line is a row of numbers, and either as wide as most of these, or of two
@@ -282,11 +262,11 @@ class _Layout:
         ]
         # of several lines of headings above the same numbers the last one counts
         # (line of headings, next such line or the end of the file)
-        ends = zip(heads, [*heads, len(lines)][1:])
+        ends = pairwise([*heads, len(lines)])
         heads = [head for head, end in ends if any(line.numeric for line in lines[head:end])]
         if heads:
             for line in lines[: heads[0]]:
-                if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
+                if line.numeric and len(line.cells) == width and are_numbers(line.cells):
                     raise self.fault(
                         line,
                         "has numbers above the headings: remove it, and keep one table or one "
@@ -300,14 +280,10 @@ class _Layout:
             if not (line.comment or any(map(is_number, line.cells)))
         ]
         if above:
-            *others, last = above
+            last = above[-1]
+            alike = len(above) > 1 and len(lines[last - 1].cells) == len(lines[last].cells)
             # the last line above the numbers may be the row of units of the line before
-            is_units = others and self.units_of(self.headings(lines[last]))
-            return (
-                [last - 1]
-                if is_units and len(lines[last - 1].cells) == len(lines[last].cells)
-                else [last]
-            )
+            return [last - 1 if alike and _are_units(self.headings(lines[last])) else last]
         for line in lines[:first]:
             if not line.comment and len(line.cells) == width:
                 raise self.fault(
@@ -321,7 +297,7 @@ class _Layout:
                     f"write {width} names {self.cut}",
                 )
         names = [f"column {n}" for n in range(width)]
-        lines[:first] = [lines[first]._replace(text=str(names), cells=names, numeric=False)]
+        lines[:first] = [lines[first]._replace(cells=names, numeric=False)]
         return [0]
 
     def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
@@ -351,12 +327,12 @@ class _Layout:
             rows.pop()
         for row in rows:
             if not row.numeric:
-                advice = "remove it, or begin it with #"
-                if self.footers:
-                    advice += (
-                        "; if it is the temperature of the rows below, write 'Temperature 20 °C'"
-                    )
-                raise self.fault(row, f"is not a row of numbers: {advice}")
+                advice = "; if it is the temperature of the rows below, write 'Temperature 20 °C'"
+                raise self.fault(
+                    row,
+                    "is not a row of numbers: remove it, or begin it with #"
+                    f"{advice * self.footers}",
+                )
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
                     row,
@@ -396,7 +372,7 @@ class _Layout:
         for line in between:
             cells = self.headings(line)
             fits = len(cells) == width or (self.separator != " " and not any(cells[width:]))
-            if fits and self.units_of(cells) and not any(found):
+            if fits and _are_units(cells) and not any(found):
                 found = (cells + found)[:width]  # "" behind a line that is shorter
             elif not (line.comment or self.is_title(line.text)):
                 raise self.fault(
@@ -404,23 +380,19 @@ class _Layout:
                 )
         return found
 
-    def units_of(self, cells: list[str]) -> bool:
-        """Return whether ``cells`` are a row of units: at least half of those that are not empty
-        are.
-        """
-        texts = [cell.strip("[](){}<> ") for cell in cells if cell]
-        units = [text for text in texts if text in NO_UNIT or (may_be_unit(text) and is_unit(text))]
-        return 2 * len(units) >= len(texts)
+
+def _are_units(cells: list[str]) -> bool:
+    """Return whether at least half of the ``cells`` that are not empty are units."""
+    texts = [cell.strip("[](){}<> ") for cell in cells if cell]
+    units = [text in NO_UNIT or (may_be_unit(text) and is_unit(text)) for text in texts]
+    return 2 * sum(units) >= len(texts)
 
 
 # --- Columns of a table by the name that the user gives ---
 
 
 def named_table(
-    path: str | PathLike[str],
-    names: Collection[str],
-    decimal: str | None = None,
-    encoding: str | None = None,
+    path: FilePath, names: Collection[str], decimal: str | None = None, encoding: str | None = None
 ) -> Table:
     """Read a table of which the user has named columns: its headings are the line that has one of
     these names.
@@ -439,8 +411,8 @@ def named_table(
     return read_table(
         path,
         lambda cells: any(_is_named(cell, name) for name in names for cell in cells if cell),
-        decimal=decimal,
-        encoding=encoding,
+        decimal,
+        encoding,
         footers=False,
     )
 
@@ -473,10 +445,12 @@ def find_column(table: Table, name: str) -> int | None:
     exact = [n for n, heading in enumerate(table.headings) if (heading or f"column {n}") == name]
     found = exact or [n for n, heading in enumerate(table.headings) if _is_named(heading, name)]
     if len(found) > 1:
-        headings = " and ".join(repr(table.headings[n]) for n in found)
-        alike = exact or len({table.headings[n] for n in found}) < len(found)
+        headings = [table.headings[n] for n in found]
+        alike = exact or len({*headings}) < len(headings)
         advice = "rename or remove one in the file" if alike else "give the heading with its unit"
-        raise FileError(table.path, f"columns {headings} are both named {name!r}: {advice}")
+        raise table.error(
+            f"columns {' and '.join(map(repr, headings))} are both named {name!r}: {advice}"
+        )
     return found[0] if found else None
 
 
@@ -489,8 +463,7 @@ def missing_column(table: Table, name: str, advice: str = "") -> FileError:
     advice: words with their punctuation that end the message, as ": name one of these"; "" for
     none.
     """
-    return FileError(
-        table.path,
+    return table.error(
         f"has no column {name!r}; its columns are {', '.join(map(repr, table.headings))}"
-        f"{suggestion(name, table.headings)}{advice}",
+        f"{suggestion(name, table.headings)}{advice}"
     )
