@@ -186,8 +186,9 @@ class SeriesFit(Result):
         """
         source = self.source or f"{self.points} points"
         errors = tuple(zip(self.admissible.rate, self.admissible.error))
-        strain = getattr(self, "strain", None)
-        return Measured(*self.band, self.largest_misfit, source, errors, strain)
+        return Measured(
+            *self.band, self.largest_misfit, source, errors, getattr(self, "strain", None)
+        )
 
     def material(
         self,

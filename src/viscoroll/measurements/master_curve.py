@@ -166,7 +166,7 @@ def listed_factors(
     curves, or different for curves of one set, and for a reference more than 0.5 K from all sets.
     """
     factors = check_array("shift", shift)
-    if not (factors > 0.0).all():
+    if (factors <= 0.0).any():
         raise ParameterError(
             "shift", f"{factors.min():g}", "> 0: give the factors a_T, not their logarithms"
         )

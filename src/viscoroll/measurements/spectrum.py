@@ -359,8 +359,9 @@ def grid_of_times(ends: Ends, density: float) -> Floats:
     density : number of times in a decade, > 0; of all they are 1 + decades ``density``, rounded.
     Returns times in equal ratios, descending, s, shape (times,).
     """
-    decades = math.log10(ends[1] / ends[0])
-    return np.geomspace(ends[1], ends[0], max(2, 1 + round(decades * density)))
+    fast, slow = ends
+    decades = math.log10(slow / fast)
+    return np.geomspace(slow, fast, max(2, 1 + round(decades * density)))
 
 
 def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
