@@ -240,7 +240,7 @@ REFUSED = [
     *each(
         vr.fit_prony,
         {
-            "loss has 0 points in curve 2: must be as many as omega has, 20": {
+            "loss has curves of [20] points: must be of as many as those of omega, [20, 20]": {
                 "omega": [OMEGA] * 2,
                 "storage": [DMA[1]] * 2,
                 "loss": [DMA[2]],

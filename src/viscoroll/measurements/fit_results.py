@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -25,14 +25,11 @@ from ..core import (
 )
 from ..core.plots.result_figures import series_fit
 from ..materials import WLF, Material, Measured, Prony, VerticalShift, check_poisson
+from ..rollers import Cylinder
 from .dynamic_moduli import UNITS, Curve, Data, KramersKronig, Relaxation, spectrum_of
-from .identification_report import summarize_fit, symbol_of
+from .identification_report import summarize_fit
 from .master_curve import Shifts
-from .spectrum import has_plateau
-
-if TYPE_CHECKING:
-    from ..rollers import Cylinder
-
+from .spectrum import admissible_spectra, has_plateau
 
 # --- Results of the fits of measured moduli ---
 
@@ -103,8 +100,9 @@ class SeriesFit(Result):
         """Symbols of the measured moduli: ["E'", "E''"] or ["E(t)"]; G in place of E where they are
         of shear.
         """
-        signs = ["(t)"] if self.data._fields[0] == "t" else ["'", "''"]
-        return [symbol_of(self) + sign for sign in signs]
+        signs = ["(t)"] if hasattr(self, "t") else ["'", "''"]
+        symbol = "G" if self.mode == "shear" else "E"
+        return [symbol + sign for sign in signs]
 
     def misfit_text(self, digits: int) -> str:
         """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
@@ -124,8 +122,10 @@ class SeriesFit(Result):
         >>> vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv"))).misfit_text(1)
         "0.4% in E', 0.4% in E''"
         """
-        pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
-        return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
+        return ", ".join(
+            f"{misfit:.{digits}%} in {symbol}"
+            for misfit, symbol in zip(np.atleast_1d(self.misfit), self.symbols)
+        )
 
     @property
     def largest_misfit(self) -> float:
@@ -137,14 +137,10 @@ class SeriesFit(Result):
     @property
     def _fault(self) -> str:
         """Words on a misfit that misses the target or is above 5 %; "" where it does neither."""
-        if not self.reached:
-            return (
-                f"the misfit of {self.largest_misfit:.2%} is above the target of {self.target:.2%}"
-            )
-        above = self.largest_misfit > MISFIT_LIMIT
-        return (
-            f"the misfit of {self.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}" if above else ""
-        )
+        limit = f"{MISFIT_LIMIT:.0%}" if self.reached else f"the target of {self.target:.2%}"
+        if self.reached and self.largest_misfit <= MISFIT_LIMIT:
+            return ""
+        return f"the misfit of {self.largest_misfit:.2%} is above {limit}"
 
     @property
     def alpha(self) -> float:
@@ -178,8 +174,6 @@ class SeriesFit(Result):
         They are computed at the first access, in some tenths of a second; n is 0 where the data
         span less than a factor of three, or nothing relaxes.
         """
-        from .spectrum import admissible_spectra
-
         return admissible_spectra(self.data, spectrum_of(self.prony, self.E, self.T_ref))
 
     @property
@@ -191,9 +185,10 @@ class SeriesFit(Result):
         the accuracy of M (:attr:`admissible`).
         """
         source = self.source or f"{self.points} points"
-        errors = zip(self.admissible.rate.tolist(), self.admissible.error.tolist(), strict=True)
-        strain = getattr(self, "strain", None)
-        return Measured(*self.band, self.largest_misfit, source, tuple(errors), strain=strain)
+        errors = tuple(zip(self.admissible.rate, self.admissible.error))
+        return Measured(
+            *self.band, self.largest_misfit, source, errors, getattr(self, "strain", None)
+        )
 
     def material(
         self,
@@ -360,9 +355,7 @@ class SeriesFit(Result):
             (*names, *(f"{name}_fit" for name in names)),
             (*self.data[1:], *self._moduli(self.data[0])),
         )
-        data: dict[str, Any] = {
-            name: (x, values, {"units": "unit of the data"}) for name, values in of_data
-        }
+        data = {name: (x, values, {"units": "unit of the data"}) for name, values in of_data}
         data |= {
             "E": (
                 "mode",
@@ -378,7 +371,7 @@ class SeriesFit(Result):
             "modulus": self.mode,
         }
         misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]
-        about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
+        about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist()))
         if self.temperature is not None:
             about["temperature"] = self.temperature
         return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
@@ -492,8 +485,7 @@ class Fit(SeriesFit):
         >>> storage.shape
         (2,)
         """
-        storage, loss = self._moduli(omega)
-        return storage, loss
+        return tuple(self._moduli(omega))
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
+from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -56,9 +56,6 @@ MOST_SPREAD = LARGEST_TIME_RATIO / 100.0
 #: ratio of the last to the first relaxation modulus above which it is none: noise on a plateau
 #: stays below
 _RISES = 1.1
-
-
-_Curve = TypeVar("_Curve", Curve, Relaxation)
 
 
 class _Options(TypedDict, total=False):
@@ -220,7 +217,7 @@ def fit_prony(
         raise ParameterError(
             "vertical_shift", describe_value(vertical_shift), "'entropic' or a function"
         )
-    mode = _mode("tension" if mode is None else mode)
+    mode = _mode(mode)
     if temperature is None:
         for name, value in {
             "reference": reference,
@@ -235,14 +232,7 @@ def fit_prony(
         shifts = None
     else:
         curve, shifts = master_curve(
-            omega,
-            storage,
-            loss=loss,
-            temperature=temperature,
-            reference=reference,
-            shift=shift,
-            on=on,
-            vertical_shift=vertical_shift,
+            omega, storage, loss, temperature, reference, shift, on, vertical_shift
         )
     data, fields, errors = _fit_series(curve, modes, misfit)
     return Fit(
@@ -251,7 +241,7 @@ def fit_prony(
         kramers_kronig=kramers_kronig(data),
         shifts=shifts,
         mode=mode,
-        temperature=None if shifts is None else shifts.reference,
+        temperature=shifts.reference if shifts else None,
         source=source,
         strain=strain,
         vertical_shift=vertical_shift,
@@ -358,23 +348,24 @@ def fit_relaxation(
     return RelaxationFit(
         **fields,
         misfit=errors[0],
-        mode=_mode("tension" if mode is None else mode),
+        mode=_mode(mode),
         source=source,
         temperature=temperature,
     )
 
 
 def _mode(mode: Any) -> Mode:
-    """Check which modulus was measured and return it; raise ParameterError for anything but
-    "tension" or "shear".
+    """Check which modulus was measured and return it, "tension" of None; raise ParameterError for
+    anything but "tension" or "shear".
     """
+    mode = "tension" if mode is None else mode
     check_choice("mode", mode, "tension", "shear")
     return mode
 
 
 def _fit_series(
-    curve: _Curve, modes: int | None, misfit: float
-) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
+    curve: Any, modes: int | None, misfit: float
+) -> tuple[Any, dict[str, Any], tuple[float, ...]]:
     """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation`
     have in common.
 
@@ -403,7 +394,7 @@ def _fit_series(
             f"within a factor of {MOST_SPREAD:g}; leave the outer points out",
         )
     spectrum, grid, reached = fewest_modes(data, target, modes)
-    T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0  # the longest comes first
+    T_ref = float(spectrum.tau.max(initial=0.0)) or 1.0  # 1 without modes
     prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)
     fields = {
         "E": spectrum.E,
@@ -517,7 +508,7 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
     Two neighbouring strains of a record are of one set if they differ by less than a fifth.
 
     records : as in :func:`fit_at_strain`.
-    Returns a list of :class:`DynamicModuli`; a record of one strain is in it as it is.
+    Returns a list of :class:`DynamicModuli`.
     Raises ParameterError for what is no record, no record, a record without strain, two of one
     strain, and records of tension beside those of shear.
     """
@@ -531,11 +522,12 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
                 f"have one without strain ({record.source or 'without source'})",
                 "of files with a column of strain and its unit; fit_prony(record) fits one without",
             )
-        order = np.argsort(strains := np.asarray(record.strain), kind="stable")
+        strains = np.asarray(record.strain)
+        order = np.argsort(strains, kind="stable")
         # cut behind each strain that the next one exceeds by more than the gap
         parts = np.split(order, np.flatnonzero(np.diff(np.log(strains[order])) > _GAP) + 1)
         # sorted indices: points stay in the order of the record
-        found += [record] if len(parts) == 1 else [_points(record, np.sort(part)) for part in parts]
+        found += [_points(record, np.sort(part)) for part in parts]
     means = [each.mean_strain for each in found]
     if len({*means}) < max(1, len(means)):
         allowed = "at least one, each of another strain"
@@ -547,10 +539,10 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
 
 def _points(record: DynamicModuli, at: Any) -> DynamicModuli:
     """Return a record of the points ``at`` of another."""
-    names = ("omega", "storage", "loss", "temperature", "strain")
-    return replace(
-        record, **{name: each[at] for name in names if (each := getattr(record, name)) is not None}
-    )
+    columns = {
+        name: each[at] for name, each in vars(record).items() if isinstance(each, np.ndarray)
+    }
+    return replace(record, **columns)
 
 
 def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
@@ -566,7 +558,7 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
     """
     strains = np.array([each.mean_strain for each in sets])
     # sets n - 1 and n are the neighbours, beyond the ends the two nearest
-    n = int(np.searchsorted(strains, strain).clip(1, strains.size - 1))
+    n = np.searchsorted(strains, strain).clip(1, strains.size - 1)
     part = math.log(strain / strains[n - 1]) / math.log(strains[n] / strains[n - 1])
     less, more = sets[n - 1 : n + 1]
     known = [each.temperature for each in (less, more) if each.temperature is not None]
@@ -578,20 +570,14 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
         )
     both = (less.omega >= more.omega.min()) & (less.omega <= more.omega.max())
     low = _points(less, both)
-    order = np.argsort(more.omega)
+    more = _points(more, np.argsort(more.omega))
     moduli = {}
     for name in ("storage", "loss"):
-        other = np.interp(
-            np.log(low.omega), np.log(more.omega[order]), np.log(getattr(more, name)[order])
-        )
+        other = np.interp(np.log(low.omega), np.log(more.omega), np.log(getattr(more, name)))
         moduli[name] = np.exp((1.0 - part) * np.log(getattr(low, name)) + part * other)
-    of = (
-        f"interpolated at a strain of {strain:.3g} between the sets at {strains[n - 1]:.3g} and "
-        f"{strains[n]:.3g}"
+    source = (
+        f"{low.source}, interpolated at a strain of {strain:.3g} between the sets at "
+        f"{strains[n - 1]:.3g} and {strains[n]:.3g}"
     )
-    return replace(
-        low,
-        strain=np.full(low.omega.size, strain),
-        source=f"{low.source}, {of}".removeprefix(", "),
-        **moduli,
-    )
+    strain_of_points = np.full(low.omega.size, strain)
+    return replace(low, strain=strain_of_points, source=source.removeprefix(", "), **moduli)

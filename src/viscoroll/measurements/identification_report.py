@@ -108,23 +108,22 @@ def _noise(fit: Any) -> Iterator[str]:
     """
     for name, noise in fit.noise.items():
         rms, lag, allowed, _ = noise
-        if name not in fit.misfit and noise.repeats == 1.0:
-            continue
         size = f"rms {rms:.2f} sigma" + " by their median" * fit._problem.robust
-        if noise.repeats == 1.0:
+        if noise.repeats != 1.0:
+            # allowed is 3/sqrt(points)
+            points = 9.0 / allowed**2
+            yield (
+                f"the residuals of {name} are autocorrelated: neighbours correlate by {lag:.2f}, "
+                f"those of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); if this is noise, "
+                "the intervals hold: they are already widened to those of "
+                f"{points / noise.repeats:.0f} points in place of {points:.0f}; otherwise "
+                f"{_INADEQUATE}: plot the residuals"
+            )
+        elif name in fit.misfit:
             yield (
                 f"the residuals of {name} are larger than noise ({size}): sigma is too small, "
                 f"or {_INADEQUATE}"
             )
-            continue
-        # allowed is 3/sqrt(points)
-        points = 9.0 / allowed**2
-        yield (
-            f"the residuals of {name} are autocorrelated: neighbours correlate by {lag:.2f}, those "
-            f"of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); if this is noise, the "
-            f"intervals hold: they are already widened to those of {points / noise.repeats:.0f} "
-            f"points in place of {points:.0f}; otherwise {_INADEQUATE}: plot the residuals"
-        )
 
 
 def _limits(fit: Any) -> Iterator[str]:
@@ -240,7 +239,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
     problem = fit._problem
     for i, found in fit._likelihood.axes(fit._delta_chi2()).items():
         name = problem.names[i]
-        for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by, strict=True):
+        for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by):
             if end is None:
                 yield (
                     f"the interval of {name} has no {side} end: values up to that end of its range "
@@ -261,10 +260,8 @@ def _interval_limits(fit: Any) -> Iterator[str]:
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
         yield f"the best fit has {problem.names[i]} at the end of its range: extend the range"
-    yield from (
-        f"the range given for {bound}, not the data, determines {', '.join(ends)}"
-        for bound, ends in limited.items()
-    )
+    for bound, ends in limited.items():
+        yield f"the range given for {bound}, not the data, determines {', '.join(ends)}"
 
 
 def _values_text(values: dict[str, float]) -> str:
@@ -280,11 +277,8 @@ def _phases(fit: Any) -> Iterator[str]:
         where mu is no unknown, and for records that are no motions.
     """
     for record_name, record in fit.records.items() if "mu" in fit.values else ():
-        slips = int(
-            np.sum(
-                fit._problem.predicted(record, fit._likelihood.best.u, record_name).get("slips", 0)
-            )
-        )
+        predicted = fit._problem.predicted(record, fit._likelihood.best.u, record_name)
+        slips = np.sum(predicted.get("slips", 0))
         if 0 < slips < _FEW:
             yield (
                 f"{record_name} has only {slips} points in full slip, which determine mu: record "
@@ -323,18 +317,18 @@ def as_dataset(fit: Any) -> Dataset:
     import xarray as xr
 
     names = np.array(list(fit.values), object)
-    ends = np.array(list(fit.intervals().values()), float)
+    low, high = np.array(list(fit.intervals().values()), float).T
     data: dict[str, Any] = {
         "value": ("unknown", list(fit.values.values())),
         "stderr": ("unknown", list(fit.stderr.values())),
         "low": (
             "unknown",
-            ends[:, 0],
+            low,
             {"long_name": "lower end of the 95 % interval, NaN if unbounded"},
         ),
         "high": (
             "unknown",
-            ends[:, 1],
+            high,
             {"long_name": "upper end of the 95 % interval, NaN if unbounded"},
         ),
         "correlation": (("unknown", "other"), fit.correlations),
@@ -342,21 +336,24 @@ def as_dataset(fit: Any) -> Dataset:
     for record_name, record in fit.records.items():
         columns = {name: getattr(record, name) for name in (*record.COORDINATES, *record.measured)}
         for name in record.sigma:
-            fitted = getattr(fit.predicted[record_name], name).value
-            columns |= {
-                f"{name} fit": fitted,
-                f"{name} sigma": fit.sigma[f"{name} of {record_name}"],
-            }
+            columns[f"{name} fit"] = fit.predicted[record_name][name].value
+            columns[f"{name} sigma"] = fit.sigma[f"{name} of {record_name}"]
         for name, values in columns.items():
             data[f"{record_name} {name}"] = (
                 f"{record_name} point",
                 np.ravel(values),
                 column_attributes(name),
             )
-    about = {"title": "Identification", "source": f"viscoroll {__version__}", "report": report(fit)}
+    about = {
+        "title": "Identification",
+        "source": f"viscoroll {__version__}",
+        "report": report(fit),
+        "chi2": fit.chi2,
+        "dof": fit.dof,
+    }
     units = [Unknown.bounds(name)["unit"] for name in fit.values]
     coords = {"unknown": names, "other": names, "unit": ("unknown", np.array(units, object))}
-    return xr.Dataset(data, coords, about | {"chi2": fit.chi2, "dof": fit.dof})
+    return xr.Dataset(data, coords, about)
 
 
 def column_attributes(name: str) -> dict[str, str]:
@@ -384,9 +381,12 @@ def as_json(fit: Any) -> dict[str, Any]:
     is_noise); and "sigma", "QUANTITY of RECORD" -> standard deviation of the first point.
     """
     fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
-    sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
     unknowns = {
-        name: {"value": fit.values[name], "stderr": sd[name], "interval": ends}
+        name: {
+            "value": fit.values[name],
+            "stderr": sd if np.isfinite(sd := fit.stderr[name]) else None,
+            "interval": ends,
+        }
         for name, ends in fit.intervals().items()
     }
     return {name: getattr(fit, name) for name in fields} | {
@@ -419,10 +419,9 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
     ``fit.admissible``.
     """
     low, high = fit.band
-    of_time = fit.data._fields[0] == "t"
     span = (
         f"t = {1.0 / high:.3g} to {1.0 / low:.3g} s"
-        if of_time
+        if hasattr(fit, "t")
         else f"omega = {low:.3g} to {high:.3g} rad/s"
     )
     rows = [SummaryRow(*row) for row in _rows(fit)]
@@ -441,7 +440,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     Yields pairs (name, text); name is "" of a line that continues the one before.
     """
     prony = fit.prony
-    symbol = symbol_of(fit)
+    symbol = fit.symbols[0][0]
     floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
     yield symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}"
     if fit.mode == "shear":
@@ -463,7 +462,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         )
     target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
     yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
-    if fit.data._fields[0] == "t":
+    if hasattr(fit, "t"):
         yield (
             "",
             f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or "
@@ -495,15 +494,8 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
             "speed/contact length) at which the material loses energy",
         )
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
-    for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
+    for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside):
         yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"
-
-
-def symbol_of(fit: Any) -> str:
-    """Return the symbol of the modulus of a ``fit``: "G" where ``fit.mode`` is "shear", else
-    "E".
-    """
-    return "G" if fit.mode == "shear" else "E"
 
 
 def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
@@ -519,14 +511,14 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
     symbol : "E" or "G".
     """
     yield f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)
-    if (shifts := fit.shifts) is None or len(shifts.temperature) < 2:
+    shifts = fit.shifts
+    count = len(shifts.temperature) if shifts else 0
+    if count < 2:
         return
     factors = ", ".join(
-        f"{T:.4g} °C {np.log10(a):+.3f}"
-        for T, a in zip(shifts.temperature, shifts.a_T, strict=True)
+        f"{T:.4g} °C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T)
     )
     yield "shifts", f"to {shifts.reference:g} °C, log10 a_T: {factors}"
-    count = len(shifts.temperature)
     if shifts.distinct > count:
         yield (
             "",
@@ -569,10 +561,10 @@ def _outside(fit: Any) -> str:
 
     fit : a :class:`viscoroll.measurements.fit_results.SeriesFit`.
     """
-    range_of = f"the data's range of {'times' if fit.data._fields[0] == 't' else '1/omega'}"
-    if not (count := int(fit.outside.sum())):
+    range_of = f"the data's range of {'times' if hasattr(fit, 't') else '1/omega'}"
+    if not (count := fit.outside.sum()):
         return f"no mode lies outside {range_of}"
-    share = float(fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0))
+    share = fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0)
     return (
         f"{count} of {fit.prony.E.size} modes, {share:.1%} of the sum of strengths, lie outside "
         f"{range_of}"

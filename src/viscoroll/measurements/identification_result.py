@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -32,6 +32,10 @@ _LEVEL = 0.95
 _DRAWS = 100_000
 #: candidates of each draw: those outside of the ranges are rejected
 _CANDIDATES = 50
+
+
+#: (low, high) of an interval, None on a side that is open
+Interval: TypeAlias = tuple[float | None, float | None]
 
 
 class Band(NamedTuple):
@@ -121,7 +125,7 @@ class Identification(Result):
         """
         self._problem = problem
         self._likelihood = Likelihood(problem, found)
-        (u, self.chi2) = found[0]
+        u, self.chi2 = found[0]
         self.values = problem.values(u)
         self.minima = [(minimum.chi2, problem.values(minimum.u)) for minimum in found]
         self.dof = problem.points - u.size
@@ -135,12 +139,11 @@ class Identification(Result):
             name for i, name in enumerate(self.values) if i not in problem.active
         )
         self.correlations = self._likelihood.correlations
-        # d value/d coordinate, by which standard deviations of coordinates become those of values
-        slopes = np.array(
-            [unknown.slope(self.values[unknown.name]) for unknown in problem.unknowns]
-        )
-        self.stderr = dict(zip(self.values, (slopes * self._likelihood.sd).tolist(), strict=True))
-        self.stderr |= dict.fromkeys(self.does_not_act, math.inf)
+        # of a value that of its coordinate times d value/d coordinate
+        self.stderr = {
+            unknown.name: float(unknown.slope(self.values[unknown.name]) * sd)
+            for unknown, sd in zip(problem.unknowns, self._likelihood.sd)
+        } | dict.fromkeys(self.does_not_act, math.inf)
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
@@ -174,7 +177,7 @@ class Identification(Result):
             return float(stats.chi2.ppf(level, 1))
         return float(stats.f.ppf(level, 1, max(self.dof - lost, 1.0)))
 
-    def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
+    def intervals(self, level: float = _LEVEL) -> dict[str, Interval]:
         """Return the interval of each unknown by its profile: (low, high), None on a side that is
         open.
 
@@ -208,9 +211,7 @@ class Identification(Result):
         >>> low < 0.3 < high
         True
         """
-        found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(
-            self.values, (None, None)
-        )
+        found: dict[str, Interval] = dict.fromkeys(self.values, (None, None))
         for i, sides in self._likelihood.axes(self._delta_chi2(level)).items():
             unknown = self._problem.unknowns[i]
             low, high = (
@@ -337,9 +338,9 @@ class Identification(Result):
         return self._predict(
             record,
             "",
-            level=level,
-            draws=check_integer("draws", draws, 0, _DRAWS),
-            seed=check_integer("seed", seed, 0),
+            level,
+            check_integer("draws", draws, 0, _DRAWS),
+            check_integer("seed", seed, 0),
         )
 
     def _predict(
@@ -398,7 +399,7 @@ class Identification(Result):
             for end, rows in {"": value, "_low": low, "_high": high}.items()
             for name, row in zip(record.QUANTITIES, rows)
         }
-        coordinates = {name: np.asarray(getattr(record, name)) for name in record.COORDINATES}
+        coordinates = {name: getattr(record, name) for name in record.COORDINATES}
         return Prediction(
             found,
             coordinates,
@@ -472,8 +473,7 @@ class Identification(Result):
         """
         u = self._coordinates(values)
         scales = [
-            unknown.slope(unknown.to_value(x))
-            for unknown, x in zip(self._problem.unknowns, u, strict=True)
+            unknown.slope(unknown.to_value(x)) for unknown, x in zip(self._problem.unknowns, u)
         ]
         return self._problem.jacobian(u) / scales
 

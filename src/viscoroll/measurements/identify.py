@@ -38,7 +38,7 @@ from .identification_result import Identification
 from .least_squares import Minimum, Problem
 from .measurement_records import OF_RECORDS, Coastdown, Record, Resistance, Traction
 from .text_table import Table, find_column, missing_column, named_table
-from .unknowns import Shift, Unknown, changes_law, cylinder_of, unknowns_of
+from .unknowns import WITHOUT_LAW, Shift, cylinder_of, unknowns_of
 
 # --- Parameters of a cylinder from measurements ---
 
@@ -164,10 +164,14 @@ def identify(
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
         raise described_error("unknown", "is empty", "at least one name and its range")
-    _refuse_tables(cylinder, unknowns)
-    problem = Problem(
-        cylinder, unknowns, records=records, robust=check_bool("robust", robust), shifts=shifts
-    )
+    changing = [each.name for each in unknowns if each.kind not in WITHOUT_LAW]
+    if changing and cylinder.scene().tabulated:
+        raise described_error(
+            "coupled",
+            f"is not False: the coupled solution needs a table for each value of {changing[0]}",
+            "False in the Cylinder, for the fast law, whose error cylinder.validity(V) states",
+        )
+    problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
     # a standard deviation that is estimated needs one degree of freedom
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
@@ -183,23 +187,6 @@ def identify(
             problem, 1 if problem.planned else count, seed, check_bool("progress", progress)
         ),
     )
-
-
-def _refuse_tables(cylinder: Cylinder, unknowns: list[Unknown]) -> None:
-    """Raise ParameterError where each trial value of an unknown would need a table of its own.
-
-    cylinder : with the fixed values; a table of the coupled solution holds for its bodies, load, R
-        and mu.
-    unknowns : of the search.
-    Returns nothing where no unknown changes the law, or the law is no table.
-    """
-    changing = [each.name for each in unknowns if changes_law(each.name)]
-    if changing and cylinder.scene().tabulated:
-        raise described_error(
-            "coupled",
-            f"is not False: the coupled solution needs a table for each value of {changing[0]}",
-            "False in the Cylinder, for the fast law, whose error cylinder.validity(V) states",
-        )
 
 
 def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
@@ -269,9 +256,9 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
     minima = [problem.estimate_sigma(min(exact, key=_chi2))]
     # of sigma as estimated at the best one
     for found in sorted((Minimum(found.u, problem.cost(found.u)) for found in exact), key=_chi2):
-        if found.chi2 - minima[0].chi2 < _ALTERNATIVE:
-            if not any(_in_same_valley(problem, found, other) for other in minima):
-                minima.append(found)
+        near = found.chi2 - minima[0].chi2 < _ALTERNATIVE
+        if near and not any(_in_same_valley(problem, found, other) for other in minima):
+            minima.append(found)
     return minima
 
 
@@ -291,11 +278,10 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
     """
     from scipy.stats import qmc
 
-    free = [i for i in problem.active if problem.names[i].split(":")[0] not in OF_RECORDS]
+    free = [i for i in problem.active if problem.unknowns[i].kind not in OF_RECORDS]
     if count > 1 and free:
-        for point in qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed)).random(
-            count - 1
-        ):
+        cube = qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed))
+        for point in cube.random(count - 1):
             u = problem.start.copy()
             u[free] = problem.low[free] + point * (problem.high - problem.low)[free]
             yield u
@@ -333,7 +319,7 @@ def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
     Returns True also if all coordinates are the same to 0.01, without a search.
     """
     difference = other.u - first.u
-    largest = int(np.argmax(np.abs(difference)))
+    largest = np.argmax(np.abs(difference))
     if abs(difference[largest]) < _SAME:
         return True
     powers = np.eye(difference.size)[largest]
@@ -352,14 +338,6 @@ _KINDS: dict[str, type[Record]] = {
     "traction": Traction,
     "coastdown": Coastdown,
 }
-#: keys of [[data]] that all kinds of record have
-_SECTION: list[Any] = [
-    ("kind", str),
-    ("file", str),
-    ("decimal", str, ""),
-    ("encoding", str, ""),
-    *((name, dict[str, str], msgspec.field(default_factory=dict)) for name in ("columns", "units")),
-]
 #: quantity that a heading says -> names that a record may have for it
 _SAID = {
     "speed": ("V",),
@@ -374,6 +352,17 @@ _SAID = {
 }
 #: word for an initial speed that is unknown, None in Python
 _UNKNOWN = "unknown"
+
+
+class _Section(msgspec.Struct):
+    """Keys of [[data]] that all kinds of record have, as :func:`_record` describes them."""
+
+    kind: str
+    file: str
+    decimal: str = ""
+    encoding: str = ""
+    columns: dict[str, str] = {}
+    units: dict[str, str] = {}
 
 
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
@@ -431,8 +420,12 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     data = [
         _record(Path(path), section, number) for number, section in enumerate(content["data"], 1)
     ]
-    ranges = {name: content[name] for name in ("unknown", "prior")}
-    return {"cylinder": cylinder, "data": data} | ranges
+    return {
+        "cylinder": cylinder,
+        "data": data,
+        "unknown": content["unknown"],
+        "prior": content["prior"],
+    }
 
 
 def _record(path: Path, content: Any, number: int) -> Record:
@@ -464,12 +457,14 @@ def _record(path: Path, content: Any, number: int) -> Record:
             f"{found}: must be one of {', '.join(_KINDS)}{suggestion(str(given), _KINDS)}",
         )
     columns = (*kind.COORDINATES, *kind.QUANTITIES)
-    fields = (
-        field for field in dataclasses.fields(kind) if field.init and field.name not in columns
-    )
     # fields of any type: the record checks their values
-    own = [(field.name, Any, field.default) for field in fields]
-    section: Any = as_struct(path, header, content, msgspec.defstruct("Data", [*_SECTION, *own]))
+    own = [
+        (field.name, Any, field.default)
+        for field in dataclasses.fields(kind)
+        if field.init and field.name not in columns
+    ]
+    keys = msgspec.defstruct("Data", own, bases=(_Section,))
+    section: Any = as_struct(path, header, content, keys)
     for name in ("columns", "units"):
         check_keys(path, f"{header}.{name}", getattr(section, name), columns)
     more: Any = {name: getattr(section, name) for name, *_ in own}
@@ -505,13 +500,15 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     ModelWarning
         Columns that are left out.
     """
-    headings = {
-        name: section.columns.get(name, name) for name in (*kind.COORDINATES, *kind.QUANTITIES)
-    }
+    names = (*kind.COORDINATES, *kind.QUANTITIES)
+    headings = dict(zip(names, names)) | section.columns
     table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
-    headings |= _said(table, {name for name in headings if name not in section.columns})
-    places = {name: find_column(table, heading) for name, heading in headings.items()}
-    present = {name: place for name, place in places.items() if place is not None}
+    headings |= _said(table, headings.keys() - section.columns)
+    present = {
+        name: place
+        for name, heading in headings.items()
+        if (place := find_column(table, heading)) is not None
+    }
     for name in (*kind.COORDINATES, *section.columns, *section.units):
         if name not in present:
             raise missing_column(
@@ -524,7 +521,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         for n, heading in enumerate(table.headings)
         if heading and n not in present.values()
     ]
-    if others and not present.keys() & set(kind.QUANTITIES):
+    if others and present.keys().isdisjoint(kind.QUANTITIES):
         name = kind.QUANTITIES[0]
         raise FileError(
             path,
@@ -558,16 +555,18 @@ def _said(table: Table, names: set[str]) -> dict[str, str]:
     Returns a dict, name -> heading, of those of ``names`` that are no heading themselves.
     Raises FileError where two headings say one.
     """
-    found: dict[str, list[str]] = {}
+    found: dict[str, str] = {}
     for n, heading in enumerate(table.headings):
         said = {
             name for each in meanings(heading, table.units[n]) for name in _SAID.get(each.name, ())
         }
         for name in said & names:
             if table.has_numbers(n) and find_column(table, name) is None:
-                found.setdefault(name, []).append(heading)
-    for name, (first, *others) in found.items():
-        if others:
-            advice = f"write one in [[data]], as columns = {{ {name} = {first!r} }}"
-            raise FileError(table.path, f"{first!r} and {others[0]!r} may both be {name}: {advice}")
-    return {name: first for name, (first, *_) in found.items()}
+                if name in found:
+                    raise FileError(
+                        table.path,
+                        f"{found[name]!r} and {heading!r} may both be {name}: write one in "
+                        f"[[data]], as columns = {{ {name} = {found[name]!r} }}",
+                    )
+                found[name] = heading
+    return found

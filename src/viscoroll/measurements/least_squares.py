@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -116,13 +117,19 @@ def _largest(values: Floats) -> float:
     return float(np.abs(values).max()) or 1.0
 
 
+@dataclass(eq=False)
 class Problem:
     """The least squares of an identification: chi2 over the coordinates of the unknowns.
 
     The coordinate of an unknown is the logarithm of its value, or of linear unknowns the value in a
     unit (:class:`.unknowns.Unknown`); it is dimensionless.
 
-    cylinder, unknowns, records, robust, shifts : as given to ``__init__``.
+    cylinder : :class:`Cylinder` with the values that are fixed.
+    unknowns : list of :class:`Unknown`, with start, range and prior.
+    records : name -> :class:`.measurement_records.Record`; all of them have values, or none.
+    robust : whether outliers count less.
+    shifts : "material" or "base" -> function of the temperature in degrees Celsius that returns
+        a_T; {} where no record has a temperature.
     planned : whether the records have no values.
     names : names of the unknowns.
     start, low, high : coordinates of start and bounds, shape (unknowns,).
@@ -137,42 +144,31 @@ class Problem:
         stay at their start.
     """
 
-    def __init__(
-        self,
-        cylinder: Cylinder,
-        unknowns: list[Unknown],
-        records: dict[str, Record],
-        robust: bool,
-        shifts: Mapping[str, Shift],
-    ) -> None:
+    cylinder: Cylinder
+    unknowns: list[Unknown]
+    records: dict[str, Record]
+    robust: bool
+    shifts: Mapping[str, Shift]
+
+    def __post_init__(self) -> None:
         """Collect the data of all records and find the active unknowns.
 
-        cylinder : :class:`Cylinder` with the values that are fixed.
-        unknowns : list of :class:`Unknown`, with start, range and prior.
-        records : name -> :class:`.measurement_records.Record`; all of them have values, or none.
-        robust : whether outliers count less.
-        shifts : "material" or "base" -> function of the temperature in degrees Celsius that returns
-            a_T; {} where no record has a temperature.
         Raises ViscorollError where the records are a plan and the start makes no cylinder or no
         motion.
         """
-        self.cylinder = cylinder
-        self.unknowns = unknowns
-        self.records = records
-        self.shifts = shifts
-        self.robust = robust
-        self.names = [unknown.name for unknown in unknowns]
-        self.planned = not any(record.measured for record in records.values())
+        self.names = [unknown.name for unknown in self.unknowns]
+        self.planned = not any(record.measured for record in self.records.values())
         self.start, self.low, self.high = np.array(
-            [unknown.to_u(np.array(unknown[1:4])) for unknown in unknowns]
+            [unknown.to_u(np.array(unknown[1:4])) for unknown in self.unknowns]
         ).T
-        self._mean, self._sd = np.array([(unknown.mean, unknown.sd) for unknown in unknowns]).T
-        self._has_prior, self._model = np.isfinite(self._sd), lru_cache(16)(self._predict_all)
-        self.columns: list[Column] = []
+        self._mean, self._sd = np.array([unknown[5:] for unknown in self.unknowns]).T
+        self._has_prior = np.isfinite(self._sd)
+        self._model = lru_cache(16)(self._predict_all)
+        self.columns = []
         y = []
         sigma = []
         size = 0
-        for record_name, record in records.items():
+        for record_name, record in self.records.items():
             # a plan has the predictions at the start for data
             values = (
                 vars(record) if record.measured else self.predicted(record, self.start, record_name)
@@ -209,9 +205,7 @@ class Problem:
         for u in (self.start, *others):
             # those that have acted at an earlier point are not tried again
             J = self.slopes(self.residuals, u, idle)
-            idle = [
-                i for i, column in zip(idle, J.T, strict=True) if np.linalg.norm(column) < _INACTIVE
-            ]
+            idle = [i for i, column in zip(idle, J.T) if np.linalg.norm(column) < _INACTIVE]
         return [i for i in range(middle.size) if i not in idle]
 
     def values(self, u: Floats) -> dict[str, float]:
@@ -219,10 +213,7 @@ class Problem:
 
         u : coordinates of the unknowns, (unknowns,).
         """
-        return {
-            unknown.name: float(unknown.to_value(x))
-            for unknown, x in zip(self.unknowns, u, strict=True)
-        }
+        return {unknown.name: float(unknown.to_value(x)) for unknown, x in zip(self.unknowns, u)}
 
     def predicted(self, record: Record, u: Floats, record_name: str) -> dict[str, Floats]:
         """Return the prediction of a record.
@@ -253,10 +244,9 @@ class Problem:
         # warnings: of what the search passes through
         with (
             np.errstate(all="ignore"),
-            warnings.catch_warnings(),
+            warnings.catch_warnings(action="ignore"),
             suppress(ViscorollError, ArithmeticError),
         ):
-            warnings.simplefilter("ignore")
             seen = {
                 name: self.predicted(record, np.frombuffer(u), name)
                 for name, record in self.records.items()
@@ -376,7 +366,8 @@ class Problem:
         single = np.count_nonzero(powers) == 1
         free = [i for i in self.active if not (single and powers[i])]
         # one more row of the residuals and their derivatives, or none
-        rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
+        rule = _STIFF * powers[np.newaxis, free]
+        rule = rule[rule.any(axis=1)]
         whole = np.clip(u, self.low, self.high)
 
         def at(v: Floats) -> Floats:

@@ -1,5 +1,5 @@
 """Sweeps at several temperatures, shifted to one :func:`master_curve`: the points of each sweep
-(:class:`Sets`), the reference temperature, and the factors a_T of the shifts (:class:`Shifts`).
+(:func:`sets_of`), the reference temperature, and the factors a_T of the shifts (:class:`Shifts`).
 """
 
 from __future__ import annotations
@@ -7,8 +7,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import pairwise, zip_longest
-from typing import Any, Literal, NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -42,20 +42,6 @@ LEAST_DISTANCE = NEAR
 _ONE = 1e-9
 
 
-class Sets(NamedTuple):
-    """Sets of points, each measured at one temperature.
-
-    temperature : temperature of each set, ascending, degrees Celsius: the median of its points,
-        shape (sets,).
-    of_point : index of the set of each point, shape (n,).
-    of_curve : index of the set of each curve in the order of the caller, shape (curves,).
-    """
-
-    temperature: Floats
-    of_point: Integers
-    of_curve: Integers
-
-
 def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
     """Return measured moduli as flat columns, with a temperature for each point.
 
@@ -68,28 +54,26 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
         list or tuple whose first element is a vector.
     Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each,
     curve after curve, in rad/s and the unit of the moduli (Pa, if they have units); index of the
-    first point of each curve, (curves,), or None of columns of points).  Whether the columns are
-    numbers, finite and > 0, is not checked here.
+    first point of each curve, (curves,), or None of columns of points).
     Raises ParameterError for shapes that do not go together, a curve without points, a unit of
-    another dimension, and for temperatures that are no finite numbers.
+    another dimension, columns that are not numbers, finite and > 0, and for temperatures that are
+    no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
-    converted = (
-        to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True)
-    )
-    columns = tuple(
-        [*np.asarray(each)] if getattr(each, "ndim", 0) == 2 else each for each in converted
-    )
-    if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
-        sizes = [*map(np.size, columns[0])]
-        for name, column in zip(Curve._fields, columns, strict=True):
-            # a curve that one of the lists lacks counts as one without points
-            of_curves = zip_longest(map(np.size, column), sizes, fillvalue=0)
-            for n, (own, wanted) in enumerate(of_curves, 1):
-                if own != wanted:
-                    raise described_error(
-                        name, f"has {own} points in curve {n}", f"as many as omega has, {wanted}"
-                    )
+    named = {
+        name: to_unit(name, column, UNITS[name]) for name, column in zip(Curve._fields, columns)
+    }
+    omega = named["omega"]
+    several = isinstance(omega, (list, tuple)) and omega and np.ndim(omega[0]) == 1
+    first = None
+    if several or getattr(omega, "ndim", 0) == 2:
+        sizes = [*map(np.size, omega)]
+        for name, column in named.items():
+            own = [*map(np.size, column)]
+            if own != sizes:
+                raise described_error(
+                    name, f"has curves of {own} points", f"of as many as those of omega, {sizes}"
+                )
         if given.shape != (len(sizes),):
             raise shape_error(
                 "temperature", given.shape, f"one number for each of the {len(sizes)} curves"
@@ -101,19 +85,20 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
                 "one or more in each curve",
             )
         first = np.cumsum([0, *sizes[:-1]])
-        return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
-    flat = [np.asarray(column) for column in columns]
-    if given.ndim == 0:
-        given = np.full(flat[0].shape, float(given))
+        given = np.repeat(given, sizes)
+        named = {name: np.concatenate(column) for name, column in named.items()}
+    elif given.ndim == 0:
+        given = np.full(np.shape(omega), given)
     if given.ndim != 1:
         raise shape_error("temperature", given.shape, "one number for each point or each curve")
-    for name, column in zip(Curve._fields, flat, strict=True):
+    flat = [check_array(name, column, above=0.0) for name, column in named.items()]
+    for name, column in zip(named, flat):
         if column.shape != given.shape:
             raise shape_error(name, column.shape, f"one number for each point, {given.shape}")
-    return given, flat, None
+    return given, flat, first
 
 
-def sets_of(temperature: Floats, first: Integers | None) -> Sets:
+def sets_of(temperature: Floats, first: Integers | None) -> tuple[list[float], Integers, Integers]:
     """Divide points into sets of one temperature.
 
     In ascending order, a temperature at most :data:`LEAST_DISTANCE`, 0.5 K, above the one before is
@@ -122,7 +107,9 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
     first : index of the first point of each curve, each < n, (curves,), as in :func:`points_of`;
         None: each set counts as a curve, in the order in which their first points come.
-    Returns the :class:`Sets`; several curves may be of one set.
+    Returns (temperature of each set, ascending, degrees Celsius: the median of its points; index of
+    the set of each point, (n,); index of the set of each curve, (curves,), of which several may be
+    of one set).
     Raises ParameterError for no points, and a set whose temperatures span more than
     :data:`.dynamic_moduli.SAME_TEMPERATURE`, 1 K.
     """
@@ -131,8 +118,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     order = np.argsort(temperature, kind="stable")
     ascending = temperature[order]
     label = np.cumsum(np.diff(ascending, prepend=ascending[0]) > LEAST_DISTANCE, dtype=np.int64)
-    of_point = np.empty_like(label)
-    of_point[order] = label
+    of_point = label[np.argsort(order)]
     parts = np.split(ascending, np.flatnonzero(np.diff(label)) + 1)
     for part in parts:
         if part[-1] - part[0] > SAME_TEMPERATURE:
@@ -145,48 +131,34 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
             )
     if first is None:  # in the order in which the sets come
         first = np.sort(np.unique(of_point, return_index=True)[1])
-    return Sets(np.array([float(np.median(part)) for part in parts]), of_point, of_point[first])
+    return [float(np.median(part)) for part in parts], of_point, of_point[first]
 
 
-def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
-    """Return the reference temperature of a master curve where the user gives none.
+def reference_of(base: float | None, temperatures: list[float], unshifted: list[float]) -> float:
+    """Return the reference temperature of a master curve.
 
-    temperatures : temperatures of the sets, at least one, ascending, degrees Celsius, (sets,).
+    base : the one that the user gives, degrees Celsius, or None.
+    temperatures : temperatures of the sets, at least one, ascending, degrees Celsius.
     unshifted : temperatures at which the given shift is 1, degrees Celsius; empty, or NaN, where
         none is known.
-    Returns degrees Celsius: the first of ``unshifted`` from the lowest to the highest set, else the
-    temperature of the middle set, of an even number the warmer one of the two.
+    Returns degrees Celsius: ``base``; if it is None the first of ``unshifted`` from the lowest to
+    the highest set, else the temperature of the middle set, of an even number the warmer one of the
+    two.
     """
-    low = temperatures[0]
-    high = temperatures[-1]
-    return next(
-        (T for T in unshifted if low <= T <= high), float(temperatures[temperatures.size // 2])
-    )
+    if base is not None:
+        return base
+    inside = (T for T in unshifted if temperatures[0] <= T <= temperatures[-1])
+    return next(inside, temperatures[len(temperatures) // 2])
 
 
-def nearest(base: float, temperatures: Floats) -> int:
-    """Return the index of the set nearest to a temperature, which must not lie outside of all sets.
-
-    base : the temperature for which the set is sought, degrees Celsius, a number.
-    temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
-    Returns an index of ``temperatures``, an int; of two equally near ones that of the colder set.
-    Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE`, 0.5 K, below the first
-    set or above the last.
-    """
-    low = temperatures[0]
-    high = temperatures[-1]
-    if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
-        raise ParameterError(
-            "reference", base, f"from {low} to {high} °C, as the curves, or at most 0.5 K outside"
-        )
-    return int(np.argmin(np.abs(temperatures - base)))
-
-
-def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, float]:
+def listed_factors(
+    shift: Any, temperatures: list[float], of_curve: Integers, base: float | None
+) -> tuple[Floats, float]:
     """Sort listed shift factors by sets, and divide them by that of the reference.
 
     shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves.
-    sets : :class:`Sets`, the sets of the points.
+    temperatures, of_curve : temperature of each set, degrees Celsius, and index of the set of each
+        curve, (curves,), as in :func:`sets_of`.
     base : reference, degrees Celsius; None: the temperature of the coldest set whose factor is 1 to
         1e-9, else that of the middle set, of an even number the warmer one.
     Returns (factors of the sets relative to the reference, (sets,); reference, degrees Celsius).
@@ -194,26 +166,24 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     curves, or different for curves of one set, and for a reference more than 0.5 K from all sets.
     """
     factors = check_array("shift", shift)
-    temperatures = sets.temperature
-    if not (factors > 0.0).all():
+    if (factors <= 0.0).any():
         raise ParameterError(
             "shift", f"{factors.min():g}", "> 0: give the factors a_T, not their logarithms"
         )
-    if factors.shape != sets.of_curve.shape:
-        allowed = (
-            f"one factor for each of {sets.of_curve.size} temperatures or curves, in their order"
-        )
+    if factors.shape != of_curve.shape:
+        allowed = f"one factor for each of {of_curve.size} temperatures or curves, in their order"
         raise shape_error("shift", factors.shape, allowed)
-    found = np.empty(temperatures.size)
+    found = np.empty(len(temperatures))
     # of several curves of a set the last factor stays, with which all are compared
-    found[sets.of_curve] = factors
-    if (found[sets.of_curve] != factors).any():
+    found[of_curve] = factors
+    if (found[of_curve] != factors).any():
         raise described_error(
             "shift", "has several factors for one temperature (to 0.5 K)", "one for each"
         )
-    if base is None:
-        base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
-    index = nearest(base, temperatures)
+    base = reference_of(
+        base, temperatures, [T for T, a_T in zip(temperatures, found) if abs(a_T - 1.0) <= _ONE]
+    )
+    index = np.argmin(np.abs(np.subtract(temperatures, base)))
     if abs(temperatures[index] - base) > LEAST_DISTANCE:
         raise ParameterError(
             "reference",
@@ -281,8 +251,8 @@ def master_curve(
     temperature: ArrayLike,
     reference: float | None,
     shift: ArrayLike | Callable[[float], float] | None,
-    on: Literal["both", "storage"] = "both",
-    vertical_shift: VerticalShift = None,
+    on: str,
+    vertical_shift: VerticalShift,
 ) -> tuple[Curve, Shifts]:
     """Shift the curves of several temperatures to one, by frequencies times a_T.
 
@@ -327,47 +297,38 @@ def master_curve(
         Curves so flat that their overlap leaves more than a decade for the shift; E' and E'' that
         overlap best at different shifts; a factor that rises with temperature; kelvins.
     """
-    point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
-    whole = [
-        check_array(name, column, above=0.0)
-        for name, column in zip(Curve._fields, columns, strict=True)
-    ]
-    sets = sets_of(point_temperatures, first)
-    temperatures = sets.temperature
-    check_celsius(
-        "temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0]
-    )
+    point_temperatures, (x, *moduli), first = points_of(temperature, omega, storage, loss)
+    temperatures, of_point, of_curve = sets_of(point_temperatures, first)
+    low = temperatures[0]
+    high = temperatures[-1]
+    check_celsius("temperature", high if high > USUAL_RANGE[1] else low)
     base = None if reference is None else check_celsius("reference", reference)
-    coldest = float(temperatures[0])
     # relative to the coldest curve, as the reference may not be known yet
-    if vertical_shift is not None:
-        b_T = [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
-        whole[1:] = [each / np.array(b_T)[sets.of_point] for each in whole[1:]]
-    mismatch = freedom = np.full(temperatures.size - 1, math.nan)
+    b_T = np.array([vertical_factor(vertical_shift, T, low) for T in temperatures])
+    moduli = [each / b_T[of_point] for each in moduli]
+    mismatch = freedom = np.full(len(temperatures) - 1, math.nan)
     if callable(shift) and not isinstance(shift, type):
-        if base is None:
-            base = default_reference(temperatures, [getattr(shift, "T0", math.nan)])
-        factor = np.array([relative_shift(shift, T, base) for T in temperatures.tolist()])
+        base = reference_of(base, temperatures, [getattr(shift, "T0", math.nan)])
+        factor = np.array([relative_shift(shift, T, base) for T in temperatures])
     elif shift is not None:
-        factor, base = listed_factors(shift, sets, base)
+        factor, base = listed_factors(shift, temperatures, of_curve, base)
     else:
-        base = default_reference(temperatures, []) if base is None else base
-        nearest(base, temperatures)
+        base = reference_of(base, temperatures, [])
+        if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
+            allowed = f"from {low} to {high} °C, as the curves, or at most 0.5 K outside"
+            raise ParameterError("reference", base, allowed)
         curves = []
-        for n, T in enumerate(temperatures.tolist()):
-            part = [column[sets.of_point == n] for column in whole]
-            curves.append(thinned(data_of(Curve, *part, fewest=2, place=f" at {T:g} °C")))
-        logs, mismatch, freedom = _shifts_by_overlap(
-            [_LogCurve(curve, on) for curve in curves], temperatures
-        )
-        found = ShiftFactors(
-            temperature=tuple(temperatures.tolist()), a_T=tuple(np.exp(logs).tolist()), T0=base
-        )
+        for n, T in enumerate(temperatures):
+            part = [column[of_point == n] for column in (x, *moduli)]
+            curve = data_of(Curve, *part, fewest=2, place=f" at {T:g} °C")
+            curves.append(_LogCurve(thinned(curve), on))
+        a_T, mismatch, freedom = _shifts_by_overlap(curves, temperatures)
+        found = ShiftFactors(temperature=tuple(temperatures), a_T=tuple(a_T), T0=base)
         # relative to the coldest curve so far, now to the reference, which may lie between curves
-        factor = np.exp(logs) / (found(base) if logs.size > 1 else 1.0)
+        factor = a_T / found(base) if len(curves) > 1 else a_T
     shifts = Shifts(
-        temperature=tuple(temperatures.tolist()),
-        a_T=tuple(factor.tolist()),
+        temperature=tuple(temperatures),
+        a_T=tuple(factor),
         T0=base,
         mismatch=mismatch,
         freedom=freedom,
@@ -382,8 +343,7 @@ def master_curve(
     if factor[-1] > factor[0] and not open_shifts:
         raise ParameterError(
             "shift" if shift is not None else "shift found by the overlap",
-            f"{factor[0]:.3g} at {temperatures[0]:g} °C and {factor[-1]:.3g} at "
-            f"{temperatures[-1]:g} °C",
+            f"{factor[0]:.3g} at {low:g} °C and {factor[-1]:.3g} at {high:g} °C",
             "shift factors a_T (time divided by time at the reference), which decrease with "
             "temperature (a list has the order of the curves): check the curves where they rise, "
             f"{', '.join(rises)}",
@@ -399,8 +359,8 @@ def master_curve(
             + ', or try on="storage"'
             * (on == "both")
         )
-    moduli = [each * vertical_factor(vertical_shift, base, coldest) for each in whole[1:]]
-    return data_of(Curve, whole[0] * factor[sets.of_point], *moduli), shifts
+    moduli = [each * vertical_factor(vertical_shift, base, low) for each in moduli]
+    return data_of(Curve, x * factor[of_point], *moduli), shifts
 
 
 def undetermined_shifts(shifts: Shifts) -> list[str]:
@@ -411,7 +371,7 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
     is above :data:`LARGEST_FREEDOM`, one decade, with both temperatures and these decades, coldest
     first; [] where there is none, as for factors that were given.
     """
-    pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
+    pairs = zip(pairwise(shifts.temperature), shifts.freedom)
     return [
         f"from {cold:g} to {warm:g} °C (free within {free:.1f} decades)"
         for (cold, warm), free in pairs
@@ -420,13 +380,13 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 
 
 def _shifts_by_overlap(
-    curves: list[_LogCurve], temperatures: Floats
+    curves: list[_LogCurve], temperatures: list[float]
 ) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 
     curves : list of :class:`_LogCurve`, one for each temperature, at least one, the coldest first.
-    temperatures : temperatures of the curves, degrees Celsius, ascending, (curves,), for messages.
-    Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; rms difference
+    temperatures : temperatures of the curves, degrees Celsius, ascending, for messages.
+    Returns (a_T of each curve relative to the coldest, (curves,), the first is 1; rms difference
     of the logarithms of the moduli of each pair of neighbours, (curves - 1,); decades by which the
     shift of each pair may vary, (curves - 1,)); of a single curve the last two are empty.
     Raises ParameterError for neighbours that do not overlap, differ by more than 0.3 in ln E' and
@@ -434,8 +394,9 @@ def _shifts_by_overlap(
     ModelWarning of neighbours whose moduli disagree on the shift.
     """
     found = [_align(*pair) for pair in pairwise(curves)]
-    for alignment, pair in zip(found, pairwise(temperatures), strict=True):
-        name = "moduli at {:g} and {:g} °C".format(*pair)
+    torn = []
+    for alignment, (cold, warm) in zip(found, pairwise(temperatures)):
+        name = f"moduli at {cold:g} and {warm:g} °C"
         if not alignment.mismatch <= _LARGEST_MISMATCH:
             raise described_error(
                 name,
@@ -448,11 +409,8 @@ def _shifts_by_overlap(
                 f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve",
                 "curves that overlap more; measure between these temperatures, or give shift=",
             )
-    torn = [
-        f"from {cold:g} to {warm:g} °C"
-        for alignment, (cold, warm) in zip(found, pairwise(temperatures), strict=True)
-        if alignment.disagree
-    ]
+        if alignment.disagree:
+            torn.append(f"from {cold:g} to {warm:g} °C")
     if torn:
         warn_of_model(
             f"E' and E'' overlap best at different shifts {', '.join(torn)}; the modulus that "
@@ -460,7 +418,7 @@ def _shifts_by_overlap(
         )
     # reshaped, since found is empty of a single curve
     steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
-    return np.append(0.0, np.cumsum(steps)), mismatch, freedom
+    return np.exp(np.append(0.0, np.cumsum(steps))), mismatch, freedom
 
 
 class _LogCurve:
@@ -493,9 +451,8 @@ class _LogCurve:
         if self.x.size < 2:
             found = "has a single value at one temperature"
             raise described_error("omega", found, "two frequencies or more at each temperature")
-        self.interpolate = (
-            CubicSpline(self.x, self.y) if self.x.size > 3 else PchipInterpolator(self.x, self.y)
-        )
+        kind = CubicSpline if self.x.size > 3 else PchipInterpolator
+        self.interpolate = kind(self.x, self.y)
 
 
 class _Alignment(NamedTuple):
@@ -553,7 +510,6 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     step = minimize_scalar(
         lambda step: cost(_mismatch(step, cold, warm)),
         bounds=around,
-        method="bounded",
         options={"xatol": 1e-9},
     ).x
     # worse than the best step of the search, or NaN, as beside the last overlap
@@ -563,16 +519,15 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     rms = np.sqrt(squares)
     least = np.sqrt(found)
     worse = np.flatnonzero((rms > least + _EQUALLY_GOOD).any(axis=1))
-    before = worse[worse < best]
-    behind = worse[worse > best]
-    ends = before[-1] if before.size else 0, behind[0] if behind.size else steps.size - 1
+    first = max(worse[worse < best], default=0)
+    last = min(worse[worse > best], default=steps.size - 1)
     own = rms.min(axis=0)
     return _Alignment(
-        step=float(step),
+        step=step,
         mismatch=math.sqrt(np.mean(found)),
-        freedom=(steps[ends[1]] - steps[ends[0]]) / math.log(10.0),
+        freedom=(steps[last] - steps[first]) / math.log(10.0),
         at_end=best in (0, steps.size - 1),
-        disagree=bool((least > np.maximum(_DISAGREES * own, own + _EQUALLY_GOOD)).any()),
+        disagree=(least > np.maximum(_DISAGREES * own, own + _EQUALLY_GOOD)).any(),
     )
 
 
@@ -586,15 +541,16 @@ def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> Floats:
     dimensionless, (moduli,); NaN where they overlap by less than 15 % of the shorter range in ln
     omega, or with fewer than three points of both together.
     """
-    low = max(cold.x[0], warm.x[0] + step)
-    high = min(cold.x[-1], warm.x[-1] + step)
-    of_warm = (warm.x + step >= low) & (warm.x + step <= high)
+    moved = warm.x + step
+    low = max(cold.x[0], moved[0])
+    high = min(cold.x[-1], moved[-1])
+    of_warm = (moved >= low) & (moved <= high)
     of_cold = (cold.x >= low) & (cold.x <= high)
-    short = high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0])
+    short = high - low < _OVERLAP * min(np.ptp(cold.x), np.ptp(warm.x))
     if short or of_warm.sum() + of_cold.sum() < _POINTS:
         return np.full(cold.y.shape[1], math.nan)
     # both ways, since either curve may have the finer points
-    at_warm = warm.y[of_warm] - cold.interpolate(warm.x[of_warm] + step)
+    at_warm = warm.y[of_warm] - cold.interpolate(moved[of_warm])
     at_cold = cold.y[of_cold] - warm.interpolate(cold.x[of_cold] - step)
     difference = np.concatenate([at_warm, at_cold])
     return np.mean(difference * difference, axis=0)

@@ -24,7 +24,7 @@ by P R.
 import math
 from collections.abc import Callable
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -42,6 +42,8 @@ _NOTHING = 1e-12
 #: least ratio of the long-time modulus to the lowest storage or relaxation modulus: a fluid has
 #: none
 FLOOR = 0.01
+#: shortest and longest time that modes may have, s
+Ends: TypeAlias = tuple[float, float]
 
 
 class LeastSquares:
@@ -66,42 +68,38 @@ class LeastSquares:
         columns = relative_columns(data, 1.0, data.responses(tau))
         self.tau = tau
         self.floor = _least_modulus(data)
-        self.size = np.sqrt((columns * columns).sum(axis=0))
+        self.size = np.linalg.norm(columns, axis=0)
         self.left = columns / self.size
         # relative moduli are to be 1; the least long-time modulus gives a part of each already
         self.right = 1.0 - self.floor * columns[:, 0]
 
-    def solve(self, row: Floats | None = None, value: float = 0.0) -> Floats:
+    def solve(self, *row: Floats, value: Any = ()) -> Floats:
         """Return the unknowns, (1 + modes,), with the least sum of squares, of all rows and perhaps
         one more.
 
-        row, value : coefficients, (1 + modes,), and right-hand side of a further residual, or None.
+        row, value : coefficients, (1 + modes,), and right-hand side of a further residual, if any.
         Raises RuntimeError, from SciPy, where the iteration does not end in 100 (1 + modes) steps.
         """
         from scipy.optimize import nnls
 
-        left = self.left if row is None else np.vstack([self.left, row])
-        right = self.right if row is None else np.append(self.right, value)
-        found: Floats = nnls(left, right, maxiter=100 * self.size.size)[0]
-        return found
+        left = np.vstack([self.left, *row])
+        return nnls(left, np.append(self.right, value), maxiter=100 * self.size.size)[0]
 
     def cost(self, unknowns: Floats) -> float:
         """Return the sum of the squared residuals, dimensionless, without that of a further row."""
         errors = self.left @ unknowns - self.right
         return float(errors @ errors)
 
-    def spectrum(self, unknowns: Floats, most: int) -> Spectrum:
+    def spectrum(self, unknowns: Floats) -> Spectrum:
         """Return the :class:`Spectrum` of unknowns, (1 + modes,): of its modes those with a
-        strength, times descending.
-
-        most : largest number of modes; the weakest ones beyond are left out.
+        strength, times descending; the weakest ones beyond :data:`MOST_MODES` are left out.
         """
         # an unknown is the norm of the relative moduli that a mode gives: by it modes are weak
         order = np.argsort(-self.tau, kind="stable")
         part = unknowns[1:][order]
         order = order[
             (part > _NOTHING * np.sqrt(self.tau.size))
-            & (part >= np.sort(part)[::-1][:most].min(initial=np.inf))
+            & (part >= np.sort(part)[-MOST_MODES:].min(initial=np.inf))
         ]
         found = unknowns / self.size
         return Spectrum(self.floor + float(found[0]), found[1:][order], self.tau[order])
@@ -119,7 +117,7 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
     Raises RuntimeError as :meth:`LeastSquares.solve`.
     """
     problem = LeastSquares(data, tau)
-    return problem.spectrum(problem.solve(), tau.size)
+    return problem.spectrum(problem.solve())
 
 
 def has_plateau(data: Data, E: float) -> bool:
@@ -132,7 +130,7 @@ def has_plateau(data: Data, E: float) -> bool:
     return E > 1.0001 * _least_modulus(data)
 
 
-def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
+def refined(data: Data, spectrum: Spectrum, ends: Ends, calls: int) -> Spectrum:
     """Refine a spectrum by varying its times too, then fit the strengths on the times found.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
@@ -148,15 +146,15 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     if not count:
         return spectrum
     # unknowns: logarithms of E, of count strengths, of count times
-    start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
+    start = np.log(np.hstack(spectrum))
     low = start - _RANGE
     high = start + _RANGE
     low[0] = np.log(_least_modulus(data))
     high[0] = np.inf
-    low[1 + count :], high[1 + count :] = np.log(ends)
+    low[-count:], high[-count:] = np.log(ends)
     # only the times are kept: strengths on given times have one best fit, which may leave modes out
-    found = _minimize(data, start, low=low, high=high, calls=calls)
-    return on_times(data, np.exp(found[1 + count :]))
+    found = _minimize(data, start, low, high, calls)
+    return on_times(data, np.exp(found[-count:]))
 
 
 #: range of the logarithm of a strength about its start
@@ -206,10 +204,10 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
         step = np.clip(logs + step, low, high) - logs
         found = residuals(data, np.exp(logs + step))
         before = errors @ errors
-        gain = errors @ errors - found @ found
+        gain = before - found @ found
         if gain > 0.0:
             damping = max(damping / 3.0, _LEAST_DAMPING)
-            logs = logs + step
+            logs += step
             errors = found
             slopes = _slopes(logs, data)
         else:
@@ -228,8 +226,7 @@ def _normal_matrix(slopes: Floats) -> Floats:
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))
-    # 2 * (n,) is the shape (n, n)
-    return sum((part.T @ part for part in parts), np.zeros(2 * (slopes.shape[1],)))
+    return sum((part.T @ part for part in parts), np.zeros(()))
 
 
 def _slopes(logs: Floats, data: Data) -> Floats:
@@ -243,9 +240,7 @@ def _slopes(logs: Floats, data: Data) -> Floats:
     ``logs``.
     """
     values = np.exp(logs)
-    count = logs.size // 2
-    strength = values[1 : 1 + count]
-    tau = values[1 + count :]
+    strength, tau = np.split(values[1:], 2)
     responses = data.responses(tau)
     by_times = data.slopes(tau, responses) * strength
     modes = np.concatenate([responses * strength, by_times], axis=2)
@@ -276,9 +271,7 @@ _LAST_CALLS = 400
 _CANDIDATES = 3
 
 
-def fewest_modes(
-    data: Data, target: float, modes: int | None
-) -> tuple[Spectrum, tuple[float, float], bool]:
+def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum, Ends, bool]:
     """Find a spectrum of few modes that reaches a misfit, or comes within 5 % of the best one where
     none reaches it.
 
@@ -310,21 +303,17 @@ def fewest_modes(
     reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)
 
     def good(tried: Spectrum) -> bool:
-        """Return whether a spectrum reaches the target or, where no grid does, is within 5 % of the
-        best one.
+        """Return whether a spectrum has the number of modes or, without that number, reaches the
+        target or, where no grid does, is within 5 % of the best one.
         """
+        if modes is not None:
+            return tried.tau.size >= modes
         return _reaches_target(data, tried, target) if reached else _size(data, tried) <= limit
 
-    fewest = modes or 1
-    enough = (
-        start
-        for start in starts
-        if (good(start[0]) if modes is None else start[0].tau.size >= modes)
-    )
-    spectrum, ends = next(enough, starts[-1])
-    for _ in range(spectrum.tau.size - fewest):
+    spectrum, ends = next((start for start in starts if good(start[0])), starts[-1])
+    while spectrum.tau.size > (modes or 1):
         fewer = _leave_out_mode(data, spectrum, ends, good if modes is None else None)
-        if fewer is None or spectrum.tau.size <= fewest:  # one step may leave out several
+        if fewer is None:
             break
         spectrum = fewer
     last = refined(data, spectrum, ends, _LAST_CALLS)
@@ -332,9 +321,7 @@ def fewest_modes(
     return spectrum, ends, _reaches_target(data, spectrum, target)
 
 
-def _fit_wider_grids(
-    data: Data, target: float | None
-) -> list[tuple[Spectrum, tuple[float, float]]]:
+def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, Ends]]:
     """Fit spectra on up to four grids of times until one reaches the target.
 
     The grids reach half a decade, then a whole one beyond the data on either side, each with one,
@@ -349,7 +336,7 @@ def _fit_wider_grids(
     empty where no grid leaves a long-time modulus.
     Raises RuntimeError as :func:`on_times` does.
     """
-    starts: list[tuple[Spectrum, tuple[float, float]]] = []
+    starts = []
     low, high = data.band
     for margin, density in product(MARGINS, DENSITIES):
         # - 0.1: the least margin is the last one tried
@@ -365,15 +352,16 @@ def _fit_wider_grids(
     return starts
 
 
-def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
+def grid_of_times(ends: Ends, density: float) -> Floats:
     """Return times of modes between two ends, from the longest down, both ends among them.
 
     ends : (shortest, longest) time, s, > 0.
     density : number of times in a decade, > 0; of all they are 1 + decades ``density``, rounded.
     Returns times in equal ratios, descending, s, shape (times,).
     """
-    decades = math.log10(ends[1] / ends[0])
-    return np.geomspace(ends[1], ends[0], max(2, 1 + round(decades * density)))
+    fast, slow = ends
+    decades = math.log10(slow / fast)
+    return np.geomspace(slow, fast, max(2, 1 + round(decades * density)))
 
 
 def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
@@ -387,10 +375,7 @@ def _size(data: Data, spectrum: Spectrum) -> float:
 
 
 def _leave_out_mode(
-    data: Data,
-    spectrum: Spectrum,
-    ends: tuple[float, float],
-    good: Callable[[Spectrum], bool] | None,
+    data: Data, spectrum: Spectrum, ends: Ends, good: Callable[[Spectrum], bool] | None
 ) -> Spectrum | None:
     """Return a spectrum with one mode less, with a mode left out or two neighbours merged, or None.
 
@@ -427,12 +412,12 @@ def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
     Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each: first those with
     one left out, then those with a mean, both from the longest time on.
     """
-    tau = spectrum.tau
-    strength = spectrum.strength
+    _, strength, tau = spectrum
     without = [np.delete(tau, n) for n in range(tau.size)]
     for n in range(tau.size - 1):
-        mean = np.exp(np.average(np.log(tau[n : n + 2]), weights=strength[n : n + 2]))
-        without.append(np.concatenate([tau[:n], [mean], tau[n + 2 :]]))
+        merged = without[n].copy()
+        merged[n] = np.exp(np.average(np.log(tau[n : n + 2]), weights=strength[n : n + 2]))
+        without.append(merged)
     return without
 
 
@@ -501,7 +486,7 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     slow, fast = Measured(*data.band, 0.0).transit_band
     n = 2 + int(_SPEEDS * math.log10(fast / slow)) if fit.tau.size and slow < fast else 0
     rate = np.geomspace(slow, fast, n)
-    T_ref = float(np.max(fit.tau)) if fit.tau.size else 1.0
+    T_ref = float(fit.tau.max(initial=0.0)) or 1.0  # 1 without modes
     prony = Prony(fit.strength / fit.E, fit.tau / T_ref)
     V = transit_speeds(prony, rate * T_ref)
     M = _moments(prony, 1.0, V)
@@ -518,16 +503,14 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     for at in rate.tolist():
         pull = _slopes_of_moment(problem, best, at)
         for sign in (-1.0, 1.0):
-            pulled = _pulled(problem, best, pull=pull, sign=sign, allowed=allowed)
-            E, strength, tau = problem.spectrum(pulled, MOST_MODES)
+            pulled = _pulled(problem, best, sign * pull, allowed)
+            E, strength, tau = problem.spectrum(pulled)
             series = Prony(strength / E, tau / T_ref)
             # at the same load kappa = R/l0 is proportional to the root of the long-time modulus
             change = _moments(series, math.sqrt(E / fit.E), V) / M - 1.0
             found.append([E, series.alpha, *change])
     spectra = np.reshape(found, (2 * n, 2 + n))
-    return AdmissibleSpectra(
-        rate=rate, V=V, M=M, M_changes=spectra[:, 2:], E=spectra[:, 0], alpha=spectra[:, 1]
-    )
+    return AdmissibleSpectra(rate, V, M, spectra[:, 2:], E=spectra[:, 0], alpha=spectra[:, 1])
 
 
 def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Floats:
@@ -549,26 +532,20 @@ def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Float
     modulus = problem.floor + parts @ best
     weight = j1(_WAVES) ** 2 / _WAVES  # in equal steps of ln u
     # M is proportional to the sum of -Im(1/modulus), of which an unknown changes Im(part/modulus^2)
-    slopes: Floats = (
-        weight @ (parts / modulus[:, None] ** 2).imag / -(weight @ (1.0 / modulus).imag)
-    )
-    return slopes
+    return weight @ (parts / modulus[:, None] ** 2).imag / -(weight @ (1.0 / modulus).imag)
 
 
-def _pulled(
-    problem: LeastSquares, best: Floats, pull: Floats, sign: float, allowed: float
-) -> Floats:
-    """Return the unknowns at which a linear form is smallest or largest among those whose sum of
-    squares is allowed.
+def _pulled(problem: LeastSquares, best: Floats, pull: Floats, allowed: float) -> Floats:
+    """Return the unknowns at which a linear form is largest among those whose sum of squares is
+    allowed.
 
-    A further residual, the form less its value at ``best`` less 1 (or plus 1), pulls the form.  The
+    A further residual, the form less its value at ``best`` less 1, pulls the form.  The
     largest weight of that residual with which the sum of squares is still allowed is found by
     halving the interval of its logarithm.
 
     problem : :class:`LeastSquares`, n unknowns.
     best : values of the unknowns with the least sum of squares, (n,).
     pull : coefficients of the form, (n,).
-    sign : 1.0 for the largest, -1.0 for the smallest value.
     allowed : largest sum of squares, dimensionless.
     """
     low, high = _WEIGHTS
@@ -577,7 +554,7 @@ def _pulled(
         middle = 0.5 * (low + high)
         # counted in fourth roots of the sum, so that one range of the logarithm serves all data
         weight = 10.0**middle * allowed**0.25
-        tried = problem.solve(weight * pull, weight * (pull @ best + sign))
+        tried = problem.solve(weight * pull, value=weight * (pull @ best + 1.0))
         if problem.cost(tried) <= allowed:
             low = middle
             found = tried

@@ -30,6 +30,8 @@ _PREFIX = {"material": "", "base": "base_"}
 _BEARING = {"brake": 0.0, "drag": 0.0}
 #: unknowns with a linear coordinate and their least value; others, above 0, have a logarithmic one
 _LINEAR = _BEARING | dict.fromkeys(("nu", "base_nu", *OF_RECORDS), -math.inf)
+#: unknowns on which the law of a cylinder does not depend
+WITHOUT_LAW = ("j", *_BEARING, *OF_RECORDS)
 #: least unit of a linear coordinate, in units of the range
 _UNIT = 0.1
 
@@ -54,6 +56,11 @@ class Unknown(NamedTuple):
     unit: float | None
     mean: float = 0.0
     sd: float = math.inf
+
+    @property
+    def kind(self) -> str:
+        """Name without that of a record, as "V0"."""
+        return self.name.split(":")[0]
 
     @staticmethod
     def bounds(name: str) -> dict[str, Any]:
@@ -82,12 +89,6 @@ class Unknown(NamedTuple):
         or the unit if linear.
         """
         return value if self.unit is None else self.unit
-
-
-def changes_law(name: str) -> bool:
-    """Return whether the law of a cylinder depends on an unknown of this name."""
-    kind = name.split(":")[0]
-    return kind != "j" and kind not in _BEARING and kind not in OF_RECORDS
 
 
 def unknowns_of(
@@ -159,13 +160,8 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
             f"a range that contains the value with which the search starts, {start:.6g}",
         )
     linear = name.split(":")[0] in _LINEAR
-    unknown = Unknown(
-        name=name,
-        start=start,
-        low=low,
-        high=high,
-        unit=max(abs(start), _UNIT * (high - low)) if linear else None,
-    )
+    unit = max(abs(start), _UNIT * (high - low)) if linear else None
+    unknown = Unknown(name, start, low, high, unit)
     if prior is None:
         return unknown
     try:
@@ -174,10 +170,10 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
         allowed = "(value, standard deviation)"
         raise ParameterError(f"prior {name}", describe_value(prior), allowed) from None
     mean = unknown.to_u(check_number(f"prior {name}", value, **bounds))
-    # without a unit the coordinate is the logarithm, whose standard deviation is given
-    unit = bounds["unit"] if linear else "1"
-    sd = check_number(f"standard deviation of prior {name}", sd, unit=unit, above=0.0)
-    return unknown._replace(mean=float(mean), sd=sd / (unknown.unit or 1.0))
+    # of a logarithmic coordinate the standard deviation of the logarithm is given
+    dimension = bounds["unit"] if linear else "1"
+    sd = check_number(f"standard deviation of prior {name}", sd, unit=dimension, above=0.0)
+    return unknown._replace(mean=float(mean), sd=sd / (unit or 1.0))
 
 
 def cylinder_of(
@@ -206,10 +202,10 @@ def cylinder_of(
         does not allow.
     """
     changes: dict[str, Any] = {name: values[name] for name in _OF_CYLINDER if name in values}
-    changes |= {} if record is None else record.overrides
+    changes |= record.overrides if record else {}
     for section, body in _bodies(cylinder).items():
         changed = _replace_values(body, _PREFIX[section], values)
-        if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
+        if record and record.temperature is not None and body.prony.alpha > 1.0:
             if not (shift := shifts.get(section, body.shift)):
                 raise ParameterError(
                     record.label("temperature"),
@@ -230,8 +226,8 @@ def _bodies(cylinder: Cylinder) -> dict[str, Material]:
     Returns a dict, "material" (the cylinder) or "base" (the half-space, if it has a material of its
     own) -> :class:`Material`.
     """
-    bodies = zip(_PREFIX, (cylinder.pair.cylinder, cylinder.pair.base), strict=True)
-    return {section: body for section, body in bodies if not (body is None or body.is_rigid)}
+    bodies = zip(_PREFIX, (cylinder.pair.cylinder, cylinder.pair.base))
+    return {section: body for section, body in bodies if body and not body.is_rigid}
 
 
 def _inputs(body: Material) -> dict[str, float]:
@@ -245,9 +241,10 @@ def _inputs(body: Material) -> dict[str, float]:
     are read.
     Returns a dict, name -> float, in this order, strengths before times.
     """
-    series = {"E": body.prony.E.tolist(), "tau": body.prony.tau.tolist()}
     modes = {
-        f"{name}_{n}": value for name, column in series.items() for n, value in enumerate(column, 1)
+        f"{name}_{n}": value
+        for name in ("E", "tau")
+        for n, value in enumerate(getattr(body.prony, name).tolist(), 1)
     }
     return {name: getattr(body, name) for name in _OF_MATERIAL} | modes
 
@@ -271,11 +268,11 @@ def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) ->
     if new == old:
         return body
     changes: dict[str, Any] = {name: new.pop(name) for name in _OF_MATERIAL}
-    if any(
-        new[name] != old[name] for name in new
-    ):  # of the modes: it is no longer what was measured
+    # new has the modes alone now
+    if not new.items() <= old.items():
         modes = tuple(new.values())
         count = body.prony.E.size
+        # it is no longer what was measured
         changes |= {"prony": _series(modes[:count], modes[count:]), "measured": None}
     elif body.measured is not None:
         changes["measured"] = body.measured.shifted(changes["T_ref"] / body.T_ref)
