@@ -412,9 +412,11 @@ def _under_load(
     a_T = states.curve.factors(zeros.theta)[0]
     rows = {name: at[name][k] for name in MOMENTS}
     rows |= {name: at[name][k] / a_T for name in ("V", "loss", "loss_slip")}
-    rows["temperature"] = zeros.theta
-    rows["a_T"] = np.where(zeros.theta > states.curve.high, np.nan, a_T)
-    rows["C_rr"] = rows["M"] / (states.load * states.R)[n[k]]
+    rows |= {
+        "temperature": zeros.theta,
+        "a_T": np.where(zeros.theta > states.curve.high, np.nan, a_T),
+        "C_rr": rows["M"] / (states.load * states.R)[n[k]],
+    }
     return rows, Zeros(n[k], zeros.theta, zeros.stable & at["stable"][k])
 
 

@@ -320,10 +320,14 @@ class HeatStates:
         """
         factors = self.curve.factors(theta)
         moments, rolling, slip = self._roll(n, factors, V)
-        found = dict(zip(MOMENTS, moments * (self.load[n] * self.R[n])))
-        found |= {"C_rr": moments[0], "loss": rolling + slip, "loss_slip": slip}
-        a_T = np.where(theta > self.curve.high, np.nan, factors[0])
-        return found | {"V": V, "temperature": theta, "a_T": a_T}
+        return dict(zip(MOMENTS, moments * (self.load[n] * self.R[n]))) | {
+            "C_rr": moments[0],
+            "loss": rolling + slip,
+            "loss_slip": slip,
+            "V": V,
+            "temperature": theta,
+            "a_T": np.where(theta > self.curve.high, np.nan, factors[0]),
+        }
 
     def _roll_freely(
         self, n: Integers, factors: tuple[Floats, Any], V: Any, more: Any

@@ -142,9 +142,9 @@ class Bodies(OneOrMany):
         return np.broadcast_to(found, self.shape) if self.shape else found
 
     def __getitem__(self, which: Any) -> Bodies:
-        bodies = self.cylinder, self.base, self.share
-        parts = (each[which] if np.shape(each) else each for each in bodies)
-        return Bodies(*parts, poisson=self.poisson)
+        parts = (self.cylinder, self.base, self.share)
+        cylinder, base, share = (each[which] if np.shape(each) else each for each in parts)
+        return Bodies(cylinder, base, share, self.poisson)
 
     @cached_property
     def _creep(self) -> tuple[Floats, ...]:
@@ -361,7 +361,14 @@ class Cover(Bodies):
     on: Literal["cylinder", "base"] = "cylinder"
     other_nu: float = 0.5
     other_thickness: Any = None
-    _determined_by = *Bodies._determined_by, "on", "nu", "thickness", "other_nu", "other_thickness"
+    _determined_by = (  # type: ignore[assignment]
+        *Bodies._determined_by,
+        "on",
+        "nu",
+        "thickness",
+        "other_nu",
+        "other_thickness",
+    )
 
     def __init__(
         self,
@@ -434,10 +441,10 @@ class Cover(Bodies):
                     "the same multiple for all covers",
                 )
             other_thickness = read_only(second)
-        bodies = (series, other) if on == "cylinder" else (other, series)
+        cylinder, base = (series, other) if on == "cylinder" else (other, series)
         vars(self).update(
-            cylinder=bodies[0],
-            base=bodies[1],
+            cylinder=cylinder,
+            base=base,
             share=part if on == "cylinder" else 1.0 - part,
             on=on,
             other_nu=other_nu,

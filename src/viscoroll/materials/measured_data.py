@@ -348,9 +348,7 @@ class ShiftFactors:
         """Return a fitted ``law`` as it is; give a ModelWarning if it misses one of the factors
         a_T by more than :data:`_FAR_OFF`, 0.1 decades.
         """
-        errors = [
-            math.log10(law(T) / a_T) for T, a_T in zip(self.temperature, self.a_T, strict=True)
-        ]
+        errors = [math.log10(law(T) / a_T) for T, a_T in zip(self.temperature, self.a_T)]
         worst = int(np.argmax(np.abs(errors)))
         if abs(errors[worst]) > _FAR_OFF:
             warn_of_model(

@@ -50,7 +50,7 @@ class Solid(NamedTuple):
     nu_instant: float | None = None
 
     #: long-time shear modulus, Pa, a number or (n,)
-    G = Material.G
+    G = Material.G  # type: ignore[misc]
 
 
 @dataclass(frozen=True)
@@ -132,8 +132,9 @@ class Pair:
         one, other = self.bodies
         if one is other or Solid in (type(one), type(other)):
             return one is other
-        names = ("E", "nu", "prony", "T_ref")
-        return all(getattr(one, name) == getattr(other, name) for name in names)
+        return all(
+            getattr(one, name) == getattr(other, name) for name in ("E", "nu", "prony", "T_ref")
+        )
 
     @cached_property
     def _moduli(self) -> list[Any]:
@@ -288,10 +289,12 @@ class Pair:
         """
         own = self.cover(l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}"
-            allowed = f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
-            allowed += "contact length at rest of half-spaces); make the law with this load and R"
-            raise described_error("material", found, allowed)
+            raise described_error(
+                "material",
+                f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}",
+                f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
+                "contact length at rest of half-spaces); make the law with this load and R",
+            )
 
     def refuse_coupled_ratios(self, law: Prony | Bodies | Cover, limit: float) -> None:
         """Raise ParameterError where half-spaces with an array of nu need the coupled solution.

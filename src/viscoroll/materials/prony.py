@@ -560,9 +560,7 @@ def series_of_alpha(alpha: float) -> Prony:
     one = np.ones(c.shape)
     series = Prony._make(True, c, one, alpha)
     # takes the place of the cached property, which would convert the series
-    series.modes = Modes(
-        alpha=alpha, a=alpha * one, b=1.0 * one, E=alpha * c, J=c, gap=(alpha * c)[:, None]
-    )
+    series.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, None])
     return series
 
 
