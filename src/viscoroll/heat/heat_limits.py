@@ -139,7 +139,7 @@ def heat_limit(
     plain, labels = strip_labels(given, scale)
     allowed = check_number("allowed", allowed, unit=SI)
     check_ambient(allowed, curve, "allowed")
-    value = check_array(name, plain[name], above=0.0 if name == "load" else -math.inf)
+    value = check_array(name, plain[name])
     if name == "V" and not value.all():
         raise described_error("V", "is 0, where the roller stays cold", "other than 0")
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):

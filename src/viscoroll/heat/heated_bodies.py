@@ -73,6 +73,8 @@ _SAMPLES = 5001
 _ROUNDING = 1e-12
 #: smallest divisor: the quotient for a divisor <= 0 is then larger than any other
 _LEAST = 1e-300
+#: a_T and sqrt(b_T) at m temperatures, (m,) each, dimensionless; the second may be a number
+Factors = tuple[Floats, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,7 @@ class ShiftCurve:
     own: float = 0.0
     ends: Any = (0.0, 0.0)
 
-    def factors(self, theta: Floats) -> tuple[Floats, Floats]:
+    def factors(self, theta: Floats) -> Factors:
         """Return a_T and sqrt(b_T), (n,) each, relative to the reference, dimensionless.
 
         They have the bits of ``Material.at``, which calls the shift for each temperature.
@@ -121,7 +123,7 @@ class ShiftCurve:
         a_T, root_b = np.reshape(found, (-1, 2)).T
         return a_T[index], root_b[index]
 
-    def at(self, theta: Floats) -> tuple[Floats, Any]:
+    def at(self, theta: Floats) -> Factors:
         """Return a_T and sqrt(b_T) as :meth:`factors`, but fast and at any temperature.
 
         A WLF or Arrhenius is evaluated by its formula, which agrees to rounding.  Beyond the range
@@ -330,7 +332,7 @@ class HeatStates:
         }
 
     def _roll_freely(
-        self, n: Integers, factors: tuple[Floats, Any], V: Any, more: Any
+        self, n: Integers, factors: Factors, V: Any, more: Any
     ) -> tuple[Floats, Floats, Floats]:
         """Return moments and losses of free rolling at temperatures, as :meth:`_roll`.
 
@@ -356,7 +358,7 @@ class HeatStates:
         return moments, rolling, np.zeros(n.size)
 
     def _roll(
-        self, n: Integers, factors: tuple[Floats, Any], V: Any, more: Any = 1.0
+        self, n: Integers, factors: Factors, V: Any, more: Any = 1.0
     ) -> tuple[Floats, Floats, Floats]:
         """Return the moments at temperatures, and the losses.
 
@@ -388,7 +390,7 @@ class HeatStates:
         return moments, np.abs(rolling * power), np.abs(slip * power)
 
 
-def warm_pair(pair: Pair, *factors: tuple[Floats, Any] | None) -> Pair:
+def warm_pair(pair: Pair, *factors: Factors | None) -> Pair:
     """Return m pairs of half-spaces, one for each state of temperature.
 
     pair: both bodies at the reference.

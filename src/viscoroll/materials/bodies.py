@@ -582,7 +582,7 @@ class Cover(Bodies):
 
     def __getitem__(self, which: Any) -> Cover:
         return self.of_thickness(
-            self.thickness[which], self.nu[which] if np.ndim(self.nu) else self.nu
+            self.thickness[which], self.nu[which] if np.ndim(self.nu) else None
         )
 
     def __repr__(self) -> str:
