@@ -145,8 +145,8 @@ REFUSED = [
             "C2 is in degC: must be in K": lambda: vr.WLF(
                 T0=20.0, C2=xr.DataArray(50.0, attrs={"units": "degC"})
             ),
-            "temperature is an array of shape (1, 2), but a material has one temperature": lambda: (
-                SOFT.at([[20.0, 1.0]], vr.WLF(T0=20.0))
+            "temperature has shape (1, 2): must be one number, as a material": lambda: SOFT.at(
+                [[20.0, 1.0]], vr.WLF(T0=20.0)
             ),
             "prony | one Prony series": lambda: vr.Material(1000000.0, 0.5, MANY),
             "high = 1.0 | >= low = 2": lambda: vr.Measured(2.0, 1.0, 0.0),

@@ -36,13 +36,12 @@ from ..core import (
     Labels,
     ModelWarning,
     Numbers,
-    check_array,
     check_number,
     described_error,
-    shape_error,
     strip_labels,
 )
 from ..laws import LawTable
+from ..materials import check_both
 from .heated_bodies import (
     FARTHEST,
     MOMENTS,
@@ -60,12 +59,6 @@ from .heated_bodies import (
 
 #: states of a block: arrays over nodes and states then stay in the cache
 _BLOCK = 256
-#: No kappa M exceeds this: the pressure acts at most half the contact length at rest ahead of the
-#: axis; twice that, for b_T down to 1/4.
-_MOST = 1.0
-
-#: Function of indices of states and temperatures, degrees Celsius, (m,) each, that returns W/m.
-Heat = Callable[[Integers, Floats], Floats]
 
 
 class Zeros(NamedTuple):
@@ -98,51 +91,47 @@ def zeros_at_speed(
     ambient = states.ambient[n]
     conductance = states.conductance[n]
     speed = np.abs(V)
-    # for kappa M = 1: the loss is P |V| M
+    # for kappa M = 1, which none exceeds: the pressure acts at most half the contact length at rest
+    # ahead of the axis; twice that, for b_T down to 1/4.  The loss is P |V| M
     rise = states.body.part * states.load[n] * more * speed / (kappa * conductance)
-    top = ambient + _MOST * rise if hottest is None else np.full(n.size, hottest)
+    top = ambient + rise if hottest is None else np.full(n.size, hottest)
     curve = states.curve
     if isinstance(states.law, LawTable) and states.loads is None and curve.slope:
+        from ..kernels.law.heat_zeros import HeatRequest
+
         # at rest any speed will do, as the rise is 0
         x = kappa * np.where(speed == 0.0, 1.0, speed * states.roller.T_ref / states.R[n])
-        return _zeros_by_kernel(
-            states.law, curve, x=np.log2(x), ambient=ambient, rise=rise, hottest=top
+        # log2 of kappa V a_T is log2 x - own + slope/(theta - pole): x_hot is its limit at high
+        # theta; the loss is conductance times power times kappa M
+        request = HeatRequest(
+            x_hot=np.log2(x) - curve.own,
+            ambient=ambient,
+            power=rise,
+            hottest=top,
+            pole=curve.pole,
+            slope=curve.slope,
+            curve=curve_of_moments(states.law),
+            density=NODES,
+            farthest=FARTHEST,
         )
+        return _zeros_by_kernel(states.law, request)
 
     def heat(k: Integers, theta: Floats) -> Floats:
         return states.heat(n[k], theta, V[k], more if np.ndim(more) == 0 else more[k])
 
-    return zeros_of(heat, curve, ambient=ambient, conductance=conductance, hottest=top)
+    return zeros_of(heat, curve, ambient, conductance, top)
 
 
-def _zeros_by_kernel(
-    law: LawTable, curve: ShiftCurve, x: Floats, ambient: Floats, rise: Floats, hottest: Floats
-) -> Zeros:
+def _zeros_by_kernel(law: LawTable, request: Any) -> Zeros:
     """Return the zeros of half-spaces of one law that roll freely, whose shift is a WLF or an
     Arrhenius.
 
     law: the law at the reference.
-    curve: the shift, of which slope, pole and own are read.
-    x: log2 of kappa V, with V in units of R/T_ref at the reference, (n,).
-    ambient, hottest: of the surroundings, and up to which zeros are sought, degrees Celsius, (n,).
-    rise: rise of temperature for kappa M = 1, K, (n,): the loss is conductance times this times
-        kappa M.
+    request: what the kernel reads of the n states, a :class:`.heat_zeros.HeatRequest`.
     """
-    from ..kernels.law.heat_zeros import HeatRequest, heat_loop
+    from ..kernels.law.heat_zeros import heat_loop
 
-    # log2 of kappa V a_T is x - own + slope/(theta - pole): x_hot is its limit at high theta
-    request = HeatRequest(
-        x_hot=x - curve.own,
-        ambient=ambient,
-        power=rise,
-        hottest=hottest,
-        pole=curve.pole,
-        slope=curve.slope,
-        curve=curve_of_moments(law),
-        density=NODES,
-        farthest=FARTHEST,
-    )
-    size = count = 3 * x.size
+    size = count = 3 * request.ambient.size
     # the kernel counts all zeros, and writes those for which there is room
     while count >= size:  # some states have more zeros than three
         size = count + 1
@@ -151,11 +140,15 @@ def _zeros_by_kernel(
         stable = np.empty(size, bool)
         count = heat_loop(law.record, request, number, above, stable)
     n = number[:count]
-    return Zeros(n, ambient[n] + above[:count], stable[:count])
+    return Zeros(n, request.ambient[n] + above[:count], stable[:count])
 
 
 def zeros_of(
-    heat: Heat, curve: ShiftCurve, ambient: Floats, conductance: Floats, hottest: Floats
+    heat: Callable[[Integers, Floats], Floats],
+    curve: ShiftCurve,
+    ambient: Floats,
+    conductance: Floats,
+    hottest: Floats,
 ) -> Zeros:
     """Find all zeros of the balances of states (:func:`.rolling_resistance.zeros_between`).
 
@@ -182,7 +175,7 @@ def zeros_of(
         # stable where f falls
         n, zero, stable = zeros_between(balance, rise, f)
         parts.append((first + n, around[n] + zero, stable))
-    n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
+    n, theta, stable = (np.concatenate(each) for each in zip(*parts))
     found = theta <= hottest[n]
     return Zeros(n[found], theta[found], stable[found])
 
@@ -239,26 +232,26 @@ class Temperatures(Equilibria):
         """Pad the equilibria of states to arrays (states..., equilibria).
 
         states, zeros: the states of the call, and the equilibria, (m,), unsorted.
-        rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in the loss is
+        rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in M is
             dropped, and stated as the reason where no other one is left.
         labels: labels of the arguments, which the fields get; None without.
         """
         low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
         speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
         inside = (speed == 0.0) | (speed >= low) & (speed <= high)
-        known = np.isfinite(rows["loss"] + rows["a_T"])
-        reason = _reasons(states, zeros, known=known, inside=inside, rows=rows)
+        known = np.isfinite(rows["M"] + rows["a_T"])
+        reason = _reasons(states, zeros, known, inside, rows)
         order = np.lexsort((zeros.theta, zeros.state))
         order = order[known[order]]
         state = zeros.state[order]
         count = np.bincount(state, minlength=states.load.size)
         table = np.array([*(rows[name] for name in self._rows), zeros.stable, inside])[:, order]
         *fields, stable, measured = pad(table, state, count, states.shape)
-        found = dict(zip(self._rows, fields, strict=True))
+        found = dict(zip(self._rows, fields))
         found |= {"stable": stable == 1.0, "measured": measured == 1.0}
         found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
         super().__init__(found, labels, si=True)
-        self.reason = reason.reshape(states.shape) if states.shape else reason[0]
+        self.reason = reason.reshape(states.shape)[()]
 
     def to_xarray(self) -> Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
@@ -362,7 +355,7 @@ def temperature(
     (:func:`viscoroll.uniform_temperature`).
     """
     level = roller
-    roller, scene, scale = resolve_model(roller, "temperature", slope=slope)
+    roller, _, scale = resolve_model(roller, "temperature", slope=slope)
     driven = {"force": force, "torque": torque, "slope": slope}
     given = {"V": V, "ambient": ambient, "conductance": conductance} | driven
     plain, labels = strip_labels(given, scale)
@@ -371,9 +364,7 @@ def temperature(
     if V is None and not loaded:
         raise described_error("V", "is not given", "given, or a force, torque or slope")
     beside = driven if loaded and V is not None else None
-    states = heat_states(
-        roller, scene, call="temperature", given=plain, slip_share=slip_share, driven=beside
-    )
+    states = heat_states(roller, "temperature", plain, slip_share, beside)
     if states.V is None:
         rows, zeros = _under_load(level, states, driven)
     else:
@@ -398,12 +389,11 @@ def _under_load(
     """
     if states.body.material.vertical_shift is not None:
         raise described_error("vertical_shift", "is given", "left out unless V is given too")
-    force = 0.0 if driven["force"] is None else driven["force"]
     # in the shape of all states, as ambient and conductance may have axes that the loads lack
-    driven = driven | {"force": np.broadcast_to(force, states.shape)}
+    force = np.broadcast_to(0.0 if driven["force"] is None else driven["force"], states.shape)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # of speeds at the reference
-        found = steady(level, **driven)
+        found = steady(level, **driven | {"force": force})
     fields = {name: found[name] for name in ("V", "stable", *MOMENTS)} | vars(found.loss)
     # without padding, which is NaN, and rest, which does not heat
     n, branch = np.nonzero(np.nan_to_num(found.V).reshape(states.load.size, -1))
@@ -414,17 +404,19 @@ def _under_load(
     zeros = zeros_of(
         lambda k, theta: power[k] / states.curve.at(theta)[0],
         states.curve,
-        ambient=states.ambient[n],
-        conductance=states.conductance[n],
+        states.ambient[n],
+        states.conductance[n],
         hottest=np.full(n.size, HOTTEST),
     )
     k = zeros.state
     a_T = states.curve.factors(zeros.theta)[0]
     rows = {name: at[name][k] for name in MOMENTS}
     rows |= {name: at[name][k] / a_T for name in ("V", "loss", "loss_slip")}
-    rows["temperature"] = zeros.theta
-    rows["a_T"] = np.where(zeros.theta > states.curve.high, np.nan, a_T)
-    rows["C_rr"] = rows["M"] / (states.load * states.R)[n[k]]
+    rows |= {
+        "temperature": zeros.theta,
+        "a_T": np.where(zeros.theta > states.curve.high, np.nan, a_T),
+        "C_rr": rows["M"] / (states.load * states.R)[n[k]],
+    }
     return rows, Zeros(n[k], zeros.theta, zeros.stable & at["stable"][k])
 
 
@@ -434,7 +426,7 @@ def _reasons(
     """Return the reasons why states have no equilibrium within the ranges of shift and data.
 
     states, zeros, rows: the states, the equilibria found, (m,), and their fields, (m,) each.
-    known, inside: whether their a_T and loss are numbers, and their speed within the data, (m,).
+    known, inside: whether their a_T and M are numbers, and their speed within the data, (m,).
     Returns texts, (states,), objects; "" for a state that has an equilibrium.
     """
     found = np.full(states.load.size, "", object)
@@ -537,15 +529,12 @@ def pair_temperatures(
         )
     V = check_number("V", V, unit=scale)
     speed = abs(V)
-    around = check_array("ambient", ambient, unit="degC")
-    off = check_array("conductance", conductance, unit="W m-1 K-1", above=0.0)
-    for name, array in (("ambient", around), ("conductance", off)):
-        if array.shape != (2,):
-            raise shape_error(name, array.shape, "two numbers, of cylinder and base")
+    around = check_both("ambient", ambient, unit="degC")
+    off = check_both("conductance", conductance, unit="W m-1 K-1", above=0.0)
     if not speed:
         raise described_error("V", "is 0, where the bodies stay cold", "other than 0")
-    curves = [shift_curve(body) for body in (pair.cylinder, pair.half_space)]
-    for at, curve in zip(around, curves, strict=True):
+    curves = [shift_curve(body) for body in pair.bodies]
+    for at, curve in zip(around, curves):
         check_ambient(at, curve, "ambient")
     load = roller.load  # type: ignore[attr-defined]
     kappa = scene.kappa
@@ -558,7 +547,7 @@ def pair_temperatures(
             times: kappa = R/l0 grows like the root of E', and V is divided by R/T_ref of the warm
             pair.
         """
-        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
+        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta)))
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
@@ -577,7 +566,7 @@ def pair_temperatures(
         return (values[:, 1:] - values[:, :1]) / _DIFFERENCE
 
     axes = []
-    for at, G, curve in zip(around, off, curves, strict=True):
+    for at, G, curve in zip(around, off, curves):
         # the loss of a body is at most P |V|/(2 kappa)
         hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
         ends = np.log2(curve.at(np.array([at, hottest]))[0])

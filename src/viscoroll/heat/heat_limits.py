@@ -2,9 +2,8 @@
 
 A roller that starts cold takes the coldest equilibrium of its speed and load, whose temperature
 rises with both and jumps where the cold branch ends: the limit is where it passes the allowed one.
-At a given temperature the speed of a balance is unique, since V M(V) does not fall for any
-material; turning points are the extrema of that speed over the temperature.  :func:`warming`
-integrates the balance of heat over time.
+At a given temperature the speed of a balance is unique, since V M(V) does not fall; turning points
+are the extrema of that speed over the temperature.  :func:`warming` integrates the balance of heat.
 """
 
 import math
@@ -14,7 +13,14 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import Assumption, Roller, refuse_arrays, resolve_model, warn_of_contact
+from ..contact_mechanics import (
+    Assumption,
+    Roller,
+    refuse_arrays,
+    resolve_model,
+    scale_of,
+    warn_of_contact,
+)
 from ..core import (
     SI,
     Booleans,
@@ -39,8 +45,8 @@ from .heated_bodies import NODES, check_ambient, heat_states, heated_body, shift
 
 # --- Limits ---
 
-#: Film coefficient of a turning roller, W/(m2 K): near the geometric mean of 10 to 50, the range of
-#: forced convection and radiation at surface speeds of 0.5 to 10 m/s.
+#: Film coefficient of a turning roller, W/(m2 K), near the geometric mean of 10 to 50, its range at
+#: surface speeds of 0.5 to 10 m/s by forced convection and radiation.
 DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab
 #: with an insulated side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
@@ -132,8 +138,8 @@ def heat_limit(
     given = {name: V if load is None else load, "ambient": ambient, "conductance": conductance}
     plain, labels = strip_labels(given, scale)
     allowed = check_number("allowed", allowed, unit=SI)
-    check_ambient(np.asarray(allowed), curve, "allowed")
-    value = check_array(name, plain[name], above=0.0 if name == "load" else -math.inf)
+    check_ambient(allowed, curve, "allowed")
+    value = check_array(name, plain[name])
     if name == "V" and not value.all():
         raise described_error("V", "is 0, where the roller stays cold", "other than 0")
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
@@ -146,12 +152,12 @@ def heat_limit(
         refuse_arrays(roller, scene, ("alpha",))
         # one state at a time: the load changes the contact length, and with it the law of a cover
         limits = np.vectorize(
-            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
+            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one))),
             otypes=[float, float, bool],
         )
         rows = limits(*arrays.values())
     names = ("V" if name == "load" else "load", "temperature", "runaway")
-    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows, strict=True)}
+    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows)}
     return Values(found, arrays, si=True, title="Limits by heat", labels=labels)
 
 
@@ -169,7 +175,7 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
 
     if "load" in given:
         roller = roller.replace(load=given["load"])
-    states = heat_states(roller, roller.scene(), "heat_limit", given)
+    states = heat_states(roller, "heat_limit", given)
 
     def above(ln: Floats, n: Integers) -> Floats:
         """Return the coldest equilibrium less the allowed temperature, K, (m,).
@@ -177,10 +183,8 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
         ln: ln of the speed, m/s, or where V is given of the factor of the load, (m,).
         n: indices of the states, (m,).
         """
-        if states.V is None:
-            zeros = zeros_at_speed(states, n, np.exp(ln))
-        else:
-            zeros = zeros_at_speed(states, n, states.V[n], np.exp(ln))
+        given = (np.exp(ln),) if states.V is None else (states.V[n], np.exp(ln))
+        zeros = zeros_at_speed(states, n, *given)
         # zeros.state counts within n; without an equilibrium the temperature runs away
         coldest = np.full(n.size, np.inf)
         np.minimum.at(coldest, zeros.state, zeros.theta)
@@ -219,11 +223,11 @@ def _limit_of_cover(
     ln = math.log(roller.load)
     slope = _RISE
     value = 0.0
-    for coupled, last in zip((False, roller.coupled), _COVER_STEPS, strict=True):
+    for coupled, last in zip((False, roller.coupled), _COVER_STEPS):
         step = math.inf
         while abs(step) > last:
             at = roller.replace(load=math.exp(ln), coupled=coupled)
-            states = heat_states(at, at.scene(), "heat_limit", given | {"V": V})
+            states = heat_states(at, "heat_limit", given | {"V": V})
             # without ambient, where no heat is given off
             theta = states.curve.nodes(given["ambient"], allowed)[1:]
             for _ in range(4):
@@ -286,22 +290,19 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     """
     from scipy.optimize.elementwise import find_minimum, find_root
 
-    _, scene, _ = resolve_model(roller, "turning_points")
-    given = {
-        "ambient": check_number("ambient", ambient, unit="degC"),
-        "conductance": check_number("conductance", conductance, unit="W m-1 K-1", above=0.0),
-    }
-    states = heat_states(roller, scene, "turning_points", given)
+    ambient = check_number("ambient", ambient, unit="degC")
+    conductance = check_number("conductance", conductance, unit="W m-1 K-1", above=0.0)
+    given = {"ambient": ambient, "conductance": conductance}
+    states = heat_states(roller, "turning_points", given)
     if states.shape:
         raise shape_error("roller", states.shape, "a Cylinder without arrays")
 
     curve = states.curve
 
     def ln_V(x: Floats) -> Floats:
-        """Return ln of the speed, m/s, whose equilibrium is at the temperature of log2 a_T = x,
-        (m,)."""
+        """Return ln of the speed, m/s, of which log2 a_T of the equilibrium is x, (m,)."""
         theta = curve.temperature_of(x)
-        off = given["conductance"] * (theta - given["ambient"])
+        off = conductance * (theta - ambient)
 
         def rest(ln: Floats, theta: Floats, off: Floats) -> Floats:
             return states.heat(np.zeros(ln.size, np.int64), theta, np.exp(ln)) - off
@@ -310,7 +311,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
         return np.where(found.success, found.x, _LN_RANGE[1])
 
     # from the hottest to ambient, near which V rises with the temperature
-    ends = np.array([min(HOTTEST, curve.high), given["ambient"]])
+    ends = np.array([min(HOTTEST, curve.high), ambient])
     low, high = np.log2(curve.at(ends)[0]).tolist()
     # without ambient itself, where no heat is given off and V is 0
     x = np.linspace(low, high, 2 + math.ceil(NODES * (high - low)))[:-1]
@@ -370,14 +371,15 @@ def conductance(
     12.566
     """
     check_choice("core", core, "cooled", "insulated")
-    given: Any = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
-    arrays = {
+    given = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
+    arrays: dict[str, Any] = {
         name: check_array(name, x, unit=SI, above=0.0) for name, x in given.items() if x is not None
     }
     broadcast_shape(**arrays)
-    h: Any = arrays.get("thickness")
-    k: Any = arrays.get("conductivity")
-    if core == "cooled" and (h is None or k is None):
+    h = arrays.get("thickness")
+    k = arrays.get("conductivity")
+    is_conducting = h is not None and k is not None
+    if core == "cooled" and not is_conducting:
         raise described_error(
             "core",
             "is 'cooled', but thickness and conductivity of the cover are not both given",
@@ -390,7 +392,7 @@ def conductance(
             f"below R = {format_value(R)}, the radius of the surface of the cover",
         )
     # circumference at the middle of the cover; of the surface where nothing is conducted
-    width = 2.0 * math.pi * (arrays["R"] if h is None or k is None else arrays["R"] - 0.5 * h)
+    width = 2.0 * math.pi * (arrays["R"] - 0.5 * h if is_conducting else arrays["R"])
     # with a source q of unit volume the mean rise of a slab is q h^2/(12 k) (4 + B)/(1 + B) if one
     # side is at ambient and the other has a film, B = film h/k; above the surface it is q h^2/(3 k)
     # if the other side is insulated, and q R^2/(8 k) in a solid cylinder
@@ -515,14 +517,12 @@ def warming(
     """
     from scipy.integrate import solve_ivp
 
-    roller, scene, scale = resolve_model(roller, "warming")
+    scale = scale_of(roller)
     start = ambient if start is None else start
     given = {"ambient": ambient, "conductance": conductance, "capacity": capacity, "start": start}
     plain, labels = strip_labels(given, scale)
-    states = heat_states(roller, scene, "warming", plain)
-    heat_capacity, theta = (
-        np.broadcast_to(plain[name], states.shape or (1,)).ravel() for name in ("capacity", "start")
-    )
+    states = heat_states(roller, "warming", plain)
+    theta = states.start
     times = check_array("t", t, unit=scale, low=0.0)
     if times.ndim != 1 or not times.size:
         raise shape_error("t", times.shape, "a list of one time or more")
@@ -535,7 +535,7 @@ def warming(
         """Return dtheta/dt of each state, then the heat per time and the heat given off, W/m."""
         off = states.conductance * (y[: theta.size] - states.ambient)
         heat = states.heat(every, y[: theta.size], speed(time))
-        return np.concatenate([(heat - off) / heat_capacity, heat, off])
+        return np.concatenate([(heat - off) / states.capacity, heat, off])
 
     # temperatures, then heat and heat given off since t = 0, of all states
     y = np.concatenate([theta, np.zeros(2 * theta.size)])
@@ -560,11 +560,11 @@ def warming(
     # (states, times) each, in the order of y
     course, heat, off = np.split(np.concatenate(parts, axis=1), 3)
     if (hot := course.max(initial=-np.inf)) > states.curve.high:
-        sentence = (
-            f"the roller warms to {hot:.5g} degrees Celsius: must be at most "
-            f"{states.curve.high:g}, up to which the shift of its material is defined"
+        raise described_error(
+            "temperature",
+            f"of the roller rises to {hot:.5g} degrees Celsius",
+            f"at most {states.curve.high:g}, up to which the shift of its material is defined",
         )
-        raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
     rows = states.fields(np.repeat(every, times.size), course.ravel(), V_t)
     warn_of_contact(roller, V_t, a_T=rows["a_T"])

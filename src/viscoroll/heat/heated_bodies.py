@@ -22,13 +22,12 @@ import numpy as np
 
 from ..contact_mechanics import (
     Field,
-    Loads,
-    Parameters,
     Roller,
     evaluate_law,
     loads_of,
     pure_rolling_fields,
     refuse_arrays,
+    resolve_model,
     states_at,
 )
 from ..core import (
@@ -74,6 +73,8 @@ _SAMPLES = 5001
 _ROUNDING = 1e-12
 #: smallest divisor: the quotient for a divisor <= 0 is then larger than any other
 _LEAST = 1e-300
+#: a_T and sqrt(b_T) at m temperatures, (m,) each, dimensionless; the second may be a number
+Factors = tuple[Floats, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,9 +98,9 @@ class ShiftCurve:
     slope: float = 0.0
     pole: float = 0.0
     own: float = 0.0
-    ends: tuple[float, float] = (0.0, 0.0)
+    ends: Any = (0.0, 0.0)
 
-    def factors(self, theta: Floats) -> tuple[Floats, Floats]:
+    def factors(self, theta: Floats) -> Factors:
         """Return a_T and sqrt(b_T), (n,) each, relative to the reference, dimensionless.
 
         They have the bits of ``Material.at``, which calls the shift for each temperature.
@@ -110,10 +111,8 @@ class ShiftCurve:
         vertical = self.material.vertical_shift
         reference = self.material.temperature
         inside = theta.clip(self.low, self.high)
-        # each temperature once, as a shift is a slow function of one number; ``...`` indexes all
-        different, index = (
-            np.unique(inside, return_inverse=True) if inside.size > 1 else (inside, ...)
-        )
+        # each temperature once, as a shift is a slow function of one number
+        different, index = np.unique(inside, return_inverse=True)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ModelWarning)  # of temperatures that look like kelvin
             unit = 1.0 if reference is None else shift(reference)
@@ -124,7 +123,7 @@ class ShiftCurve:
         a_T, root_b = np.reshape(found, (-1, 2)).T
         return a_T[index], root_b[index]
 
-    def at(self, theta: Floats) -> tuple[Floats, Any]:
+    def at(self, theta: Floats) -> Factors:
         """Return a_T and sqrt(b_T) as :meth:`factors`, but fast and at any temperature.
 
         A WLF or Arrhenius is evaluated by its formula, which agrees to rounding.  Beyond the range
@@ -188,28 +187,23 @@ def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
 
         # where log2 a_T reaches the largest that is evaluated
         low = pole + slope / (FARTHEST + own)
-        return ShiftCurve(
-            material=material,
-            low=low,
-            high=math.inf,
-            temperature_of=temperature_of,
-            slope=slope,
-            pole=pole,
-            own=own,
-        )
+        return ShiftCurve(material, low, math.inf, temperature_of, slope, pole, own)
     theta, a_T = _sampled(shift, reference, vertical)
     log2 = np.log2(a_T)
     if (rises := np.flatnonzero(np.diff(log2) > _ROUNDING)).size:
-        found = f"rises at {theta[rises[0]]:.4g} degrees Celsius"
-        raise described_error("shift", found, "a function that does not rise with temperature")
+        raise described_error(
+            "shift",
+            f"rises at {theta[rises[0]]:.4g} degrees Celsius",
+            "a function that does not rise with temperature",
+        )
     # log2 a_T falls: reversed it ascends, as interpolation requires
     slopes = np.diff(log2) / np.diff(theta)
     return ShiftCurve(
-        material=material,
+        material,
         low=float(theta[0]),
         high=float(theta[-1]),
         temperature_of=lambda x: np.interp(x, log2[::-1], theta[::-1]),
-        ends=(float(slopes[0]), float(slopes[-1])),
+        ends=slopes[[0, -1]],
     )
 
 
@@ -280,27 +274,30 @@ class HeatStates:
     remade : whether the shape of the law changes with temperature: a vertical shift beside an
         elastic body.
     shape : shape of the states.
-    V : speed of each state, m/s, any sign; None where the load gives it.
+    ambient, conductance : of each state, degrees Celsius and W/(m K).
     R, load, kappa, mu : of each state, m, N/m, and dimensionless.
     material : index of the material of each state, a float as laws take it.
-    ambient, conductance : degrees Celsius and W/(m K).
+    V : speed of each state, m/s, any sign; None where the load gives it.
+    capacity, start : of each state, J/(m K) and degrees Celsius; None but of a warming.
     """
 
     roller: Any
     law: Any
-    loads: Loads | None
+    loads: Any
     body: Heated
     curve: ShiftCurve
     remade: bool
     shape: tuple[int, ...]
-    V: Any
+    ambient: Floats
+    conductance: Floats
     R: Floats
     load: Floats
     kappa: Floats
     mu: Floats
     material: Floats
-    ambient: Floats
-    conductance: Floats
+    V: Any = None
+    capacity: Any = None
+    start: Any = None
 
     def heat(self, n: Integers, theta: Floats, V: Any, more: Any = 1.0) -> Floats:
         """Return the heat of the body, W/m, (m,).
@@ -312,11 +309,7 @@ class HeatStates:
             without force and torque.
         Where friction cannot carry the load, the heat is that without slip.
         """
-        factors = self.curve.at(theta)
-        if self.loads is None:
-            rolling = np.abs(self._free(n, factors, V=V, more=more, names=("M",))[0])
-            return self.body.part * self.load[n] * more * np.abs(V) * rolling
-        rolling, slip = self._driven(n, factors, V, more)[1]
+        _, rolling, slip = self._roll(n, self.curve.at(theta), V, more)
         return self.body.part * rolling + self.body.slip * slip
 
     def fields(self, n: Integers, theta: Floats, V: Floats) -> dict[str, Floats]:
@@ -324,34 +317,27 @@ class HeatStates:
 
         n, theta, V: indices of states, temperatures and speeds, as in :meth:`heat`.
 
-        ``a_T`` is NaN outside of the range of the shift, and ``loss`` where the friction does not
-        suffice: the others mean nothing there.
+        ``a_T`` is NaN outside of the range of the shift, and M where the friction does not suffice:
+        the others mean nothing there.
         """
         factors = self.curve.factors(theta)
-        load = self.load[n]
-        if self.loads is None:
-            moments = self._free(n, factors, V=V, more=1.0, names=MOMENTS)
-            loss = load * V * moments[0]
-            slip = np.zeros(n.size)
-        else:
-            parts, (rolling, slip) = self._driven(n, factors, V)
-            loss = np.where(np.isnan(parts[2]), np.nan, rolling + slip)
-            # in the order of MOMENTS, divided by P R
-            moments = np.array([parts[0] + parts[1], parts[0], parts[1]])
-        found = dict(zip(MOMENTS, moments * (load * self.R[n]), strict=True))
-        found |= {"C_rr": moments[0], "loss": loss, "loss_slip": slip}
-        a_T = np.where(theta > self.curve.high, np.nan, factors[0])
-        return found | {"V": V, "temperature": theta, "a_T": a_T}
+        moments, rolling, slip = self._roll(n, factors, V)
+        return dict(zip(MOMENTS, moments * (self.load[n] * self.R[n]))) | {
+            "C_rr": moments[0],
+            "loss": rolling + slip,
+            "loss_slip": slip,
+            "V": V,
+            "temperature": theta,
+            "a_T": np.where(theta > self.curve.high, np.nan, factors[0]),
+        }
 
-    def _free(
-        self, n: Integers, factors: tuple[Floats, Any], V: Any, more: Any, names: tuple[str, ...]
-    ) -> Floats:
-        """Return fields of free rolling at temperatures, dimensionless, (names, m).
+    def _roll_freely(
+        self, n: Integers, factors: Factors, V: Any, more: Any
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return moments and losses of free rolling at temperatures, as :meth:`_roll`.
 
-        factors: a_T and sqrt(b_T) at these temperatures, (m,) each, or a number.
-        n, V, more: as in :meth:`heat`.  A load that is ``more`` times as large divides kappa = R/l0
-            by the root of ``more``.
-        names: names of fields, as "M".
+        factors, n, V, more: as in :meth:`_roll`.  A load that is ``more`` times as large divides
+            kappa = R/l0 by the root of ``more``.
         """
         a_T, root_b = factors
         law = self.law
@@ -360,64 +346,59 @@ class HeatStates:
         unit = self.R[n] / (self.roller.T_ref * a_T)  # as of the Cylinder of this temperature
         if self.remade:
             pair = self.roller.body_data.pair
-            warm = warm_pair(
-                pair,
-                *(
-                    factors if body is self.body.material else None
-                    for body in (pair.cylinder, pair.half_space)
-                ),
-            )
+            heated = (body is self.body.material for body in pair.bodies)
+            warm = warm_pair(pair, *(factors if warms else None for warms in heated))
             law = warm.law
             index = np.arange(float(n.size))
             kappa = self.kappa[n] * np.sqrt(warm.E_prime / pair.E_prime)
             unit = self.R[n] / warm.T_ref
         state = [index, kappa / np.sqrt(more), self.mu[n], V / unit, 0.0]
-        return evaluate_law(law, state, shape=n.shape, creep_is_omega=False, names=names)
+        moments = evaluate_law(law, state, shape=n.shape, creep_is_omega=False, names=MOMENTS)
+        rolling = self.load[n] * more * np.abs(V) * np.abs(moments[0])
+        return moments, rolling, np.zeros(n.size)
 
-    def _driven(
-        self, n: Integers, factors: tuple[Floats, Any], V: Any, more: Any = 1.0
-    ) -> tuple[Floats, tuple[Floats, Floats]]:
-        """Return the state under the loads at temperatures, and its losses.
+    def _roll(
+        self, n: Integers, factors: Factors, V: Any, more: Any = 1.0
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return the moments at temperatures, and the losses.
 
         factors: a_T and sqrt(b_T) at these temperatures, (m,) each, or a number.
-        n, V, more: as in :meth:`heat`; at V = 0, where the losses are 0, the state is that of a
-            dimensionless speed of 1.
-        Returns (M_half_space, M_cylinder and delta, dimensionless, (3, m), NaN where the friction
-        does not suffice; (loss in rolling, loss in slip), W/m, (m,) each).
+        n, V, more: as in :meth:`heat`; at V = 0, where the losses are 0, the state under loads is
+            that of a dimensionless speed of 1.
+        Returns (the :data:`MOMENTS` divided by P R, (3, m), NaN where the friction does not
+        suffice; loss in rolling and loss in slip, W/m, (m,) each).
         """
+        if self.loads is None:
+            return self._roll_freely(n, factors, V, more)
         a_T, root_b = factors
         # over R/T_ref at the temperature, whose T_ref is a_T times that of the reference
         speed = np.abs(V) * self.roller.T_ref * a_T / self.R[n]
         # one for each state, also where V is a number
         sign = np.where(V < 0.0, -1.0, 1.0) + np.zeros(n.size)
-        loads: Any = self.loads
-        vectors = {name: getattr(loads, name)[n] for name in ("force", "torque", "mu", "j")}
-        loads = loads._replace(kappa=loads.kappa[n] * root_b / np.sqrt(more), **vectors)
-        every = np.arange(n.size)
-        rows = states_at(
-            self.law, loads, load=every, sign=sign, V=np.where(speed == 0.0, 1.0, speed)
-        ).rows
-        moments = rows[[Field.M_HALF_SPACE, Field.M_CYLINDER, Field.DELTA]]
-        delta = np.nan_to_num(moments[2])
+        vectors = {name: getattr(self.loads, name)[n] for name in ("force", "torque", "mu", "j")}
+        kappa = self.loads.kappa[n] * root_b / np.sqrt(more)
+        loads = self.loads._replace(kappa=kappa, **vectors)
+        moving = np.where(speed == 0.0, 1.0, speed)
+        rows = states_at(self.law, loads, np.arange(n.size), sign, moving).rows
+        half_space, cylinder, delta = rows[[Field.M_HALF_SPACE, Field.M_CYLINDER, Field.DELTA]]
+        moments = np.where(np.isnan(delta), np.nan, [half_space + cylinder, half_space, cylinder])
+        delta = np.nan_to_num(delta)
         # as Steady.loss: what shear changes in the moments is taken from friction
         rolling = rows[Field.FREE_HALF_SPACE] + (1.0 + delta) * rows[Field.FREE_CYLINDER]
-        slip = delta * rows[Field.Q] + moments[0] + (1.0 + delta) * moments[1] - rolling
+        slip = delta * rows[Field.Q] + half_space + (1.0 + delta) * cylinder - rolling
         power = V * self.load[n] * more
-        return moments, (np.abs(rolling * power), np.abs(slip * power))
+        return moments, np.abs(rolling * power), np.abs(slip * power)
 
 
-def warm_pair(pair: Pair, *factors: tuple[Floats, Any] | None) -> Pair:
+def warm_pair(pair: Pair, *factors: Factors | None) -> Pair:
     """Return m pairs of half-spaces, one for each state of temperature.
 
     pair: both bodies at the reference.
     factors: for the cylinder, then for the base, (a_T, sqrt(b_T)) at the m temperatures, (m,) each,
         dimensionless; None: that body does not change.
     """
-    bodies = [
-        warm_solid(body, *each) if each else body
-        for body, each in zip((pair.cylinder, pair.half_space), factors, strict=True)
-    ]
-    return Pair(bodies[0], bodies[1], pair.plane)
+    bodies = [warm_solid(body, *each) if each else body for body, each in zip(pair.bodies, factors)]
+    return Pair(*bodies, plane=pair.plane)
 
 
 def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:
@@ -426,13 +407,8 @@ def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:
     body: a Material or a Solid at the reference.
     a_T, root_b: a_T and sqrt(b_T) at the m temperatures, (m,) each, dimensionless.
     """
-    return Solid(
-        E=body.E * root_b**2,
-        nu=body.nu,
-        prony=body.prony.slower(a_T.clip(1e-90, 1e90)),  # beyond, M is 0 and times are refused
-        T_ref=body.T_ref,
-        thickness=body.thickness,
-    )
+    prony = body.prony.slower(a_T.clip(1e-90, 1e90))  # beyond, M is 0 and times are refused
+    return Solid(body.E * root_b**2, body.nu, prony, body.T_ref, body.thickness)
 
 
 def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
@@ -462,21 +438,21 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
         )
     # each has half of both losses, at one temperature; equal series are not enough for that
     same = "thickness", "temperature", "shift", "vertical_shift"
-    one, other = ([getattr(body, name) for name in same] for body, _ in bodies)
+    one, other = ([getattr(body, name) for name in same] for body in pair.bodies)
     if pair.like and one == other:
         return Heated(pair.cylinder, 0.5, 0.5)
     if len(found) > 1:
-        allowed = (
+        raise described_error(
+            "base",
+            "relaxes too",
             "elastic, rigid, or of the same material, thickness, reference temperature and shift; "
-            "for two half-spaces that relax call vr.pair_temperatures"
+            "for two half-spaces that relax call vr.pair_temperatures",
         )
-        raise described_error("base", "relaxes too", allowed)
     return found[0]
 
 
 def heat_states(
-    roller: Roller,
-    scene: Parameters,
+    roller: Any,
     call: str,
     given: dict[str, Any],
     slip_share: float = 0.5,
@@ -484,7 +460,7 @@ def heat_states(
 ) -> HeatStates:
     """Check the arguments of a call, and flatten the states of the one body that is heated.
 
-    roller, scene: as in :func:`.parameters.resolve_model`.
+    roller: the first argument of the call, on its slope.
     call: name of the function, for errors.
     given: "ambient", "conductance", and others that take part in the shape, as "V": numbers or
         arrays without labels; None: not given.
@@ -496,6 +472,7 @@ def heat_states(
     covers or under a load, an ambient outside the range of the shift, two bodies with a temperature
     each, a vertical shift of a cover or beside an elastic body under a load.
     """
+    roller, scene, scale = resolve_model(roller, call)
     body = heated_body(roller, call, slip_share)
     curve = shift_curve(body.material)
     # those that a call needs: None is refused too; others are left out then
@@ -518,31 +495,32 @@ def heat_states(
     if driven is not None:
         refuse_arrays(roller, scene, ("alpha",))
     if vertical and (covered or (remade and driven is not None)):
-        allowed = (
+        raise described_error(
+            "vertical_shift",
+            "is given",
             "left out for a cover and, where a force, torque or slope is given, beside an elastic "
-            "body: the law would be another one at each temperature"
+            "body: the law would be another one at each temperature",
         )
-        raise described_error("vertical_shift", "is given", allowed)
     several = scene.material_array
     index: Any = 0.0 if several is None else np.arange(float(len(several)))
-    cylinder: Any = roller
     arrays |= {
-        "R": cylinder.R,
-        "load": cylinder.load,
+        "R": roller.R,
+        "load": roller.load,
         "kappa": scene.kappa,
         "mu": scene.mu,
         "material": index,
     }
     shape = broadcast_shape(**arrays)
-    flat = dict(zip(arrays, broadcast_rows(arrays.values(), shape), strict=True))
-    names = ("R", "load", "kappa", "mu", "material", "ambient", "conductance")
+    flat = dict(zip(arrays, broadcast_rows(arrays.values(), shape)))
+    for name in ("force", "torque", "slope"):  # take part in the shape alone
+        flat.pop(name, None)
     loads = None
     if driven is not None:
         force, torque = (
-            make_dimensionless(name, driven[name], roller.scale) for name in ("force", "torque")
+            make_dimensionless(name, driven[name], scale) for name in ("force", "torque")
         )
         # a V of 1 says that the speed is given and one load is found; speeds come with each call
-        loads = loads_of(scene, force, torque=torque, slope=driven["slope"], V=np.ones(shape))
+        loads = loads_of(scene, force, torque, driven["slope"], V=np.ones(shape))
     return HeatStates(
         roller,
         (scene.table if loads is None else scene.rolling_law) or several,
@@ -551,29 +529,27 @@ def heat_states(
         curve,
         remade,
         shape,
-        flat.get("V"),
-        *(flat[name] for name in names),
+        **flat,
     )
 
 
-def check_ambient(ambient: Floats, curve: ShiftCurve, name: str) -> None:
+def check_ambient(ambient: Any, curve: ShiftCurve, name: str) -> None:
     """Raise ParameterError for a temperature outside the range of a shift, and warn of one that
     looks like kelvin.
 
-    ambient: temperatures, degrees Celsius, any shape.
+    ambient: temperatures, degrees Celsius, a number or an array.
     curve: shift of the body that has it.
     name: name of the argument.
     """
-    _, ends = check_array_extent(name, ambient, above=ABSOLUTE_ZERO)
-    for at in dict.fromkeys(ends if ambient.size else ()):
+    array, ends = check_array_extent(name, ambient, above=ABSOLUTE_ZERO)
+    for at in dict.fromkeys(ends if array.size else ()):
         check_celsius(name, at)
         if not curve.low <= at <= curve.high:
-            allowed = f"at least {curve.low:g} and at most {curve.high:g}"
-            sentence = (
-                f"{name} = {at:g} degrees Celsius is outside the range of the shift of the "
-                f"material: must be {allowed}"
+            raise described_error(
+                name,
+                f"= {at:g} degrees Celsius is outside the range of the shift of the material",
+                f"at least {curve.low:g} and at most {curve.high:g}",
             )
-            raise ParameterError(name, at, allowed, sentence)
 
 
 @lru_cache(maxsize=16)

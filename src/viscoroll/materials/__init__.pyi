@@ -2,6 +2,7 @@
 
 from .bodies import Bodies as Bodies
 from .bodies import Cover as Cover
+from .bodies import check_both as check_both
 from .bodies import total_series as total_series
 from .checked_netcdf import AXIS as AXIS
 from .checked_netcdf import CHECKSUM as CHECKSUM

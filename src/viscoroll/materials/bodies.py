@@ -85,6 +85,7 @@ class Bodies(OneOrMany):
     base: Prony
     share: Any = 0.5
     poisson: tuple[float, float] | None = None
+    _determined_by = "cylinder", "base", "share", "poisson"
 
     def __post_init__(self) -> None:
         """Check the bodies, set ``shape``, and replace ``share`` by a float or a read-only copy of
@@ -97,25 +98,26 @@ class Bodies(OneOrMany):
         bodies = {"cylinder": self.cylinder, "base": self.base}
         for name, body in bodies.items():
             if not isinstance(body, Prony):
-                allowed = "a Prony series, as vr.Prony([2.0], [0.1]), of one body or of n bodies"
-                raise ParameterError(name, describe_value(body), allowed)
+                raise ParameterError(
+                    name,
+                    describe_value(body),
+                    "a Prony series, as vr.Prony([2.0], [0.1]), of one body or of n bodies",
+                )
         if self.poisson is not None:
-            values = check_array("poisson", self.poisson, above=-1.0, high=0.5)
-            if values.shape != (2,):
-                raise shape_error("poisson", values.shape, "two numbers, of cylinder and base")
-            object.__setattr__(self, "poisson", tuple(values.tolist()))
+            values = check_both("poisson", self.poisson, above=-1.0, high=0.5)
+            vars(self)["poisson"] = tuple(values.tolist())
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
             raise shape_error("share", share.shape, "a number, or a list, one for each pair")
-        object.__setattr__(self, "shape", broadcast_shape(**bodies, share=share))
-        modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
-        if modes > MOST_MODES:
+        vars(self)["shape"] = broadcast_shape(**bodies, share=share)
+        modes = sum(body.E.shape[-1] for body in bodies.values())
+        if self.shape and modes > MOST_MODES:
             raise described_error(
                 "the pair",
                 f"has {modes} terms in both series",
                 f"one of at most {MOST_MODES} terms",
             )
-        object.__setattr__(self, "share", read_only(share))
+        vars(self)["share"] = read_only(share)
 
     @property
     def _same(self) -> bool:
@@ -153,7 +155,7 @@ class Bodies(OneOrMany):
         strength), (..., modes) each, slowest first, modes without strength last, as those of a
         rigid body.
         """
-        share = np.asarray(self.share)[..., np.newaxis]
+        share = np.asarray(self.share)[..., None]
         parts = share * self.cylinder.J, (1.0 - share) * self.base.J
         # the half-space's part of each strength: none of the cylinder's modes, all of the base's
         bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.base.T)
@@ -211,7 +213,7 @@ class Bodies(OneOrMany):
         """
         J = self.total.J
         if self._same:
-            return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
+            return np.broadcast_to(1.0 - np.asarray(self.share)[..., None], J.shape).copy()
         # the series leaves out the last modes, which have no strength
         own = self._creep[2][..., : J.shape[-1]]
         return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
@@ -252,12 +254,6 @@ class Bodies(OneOrMany):
                 weights=some.half_space_weights[block.rows, : block.modes.J.shape[-1]]
             )
 
-    @cached_property
-    def _key(self) -> tuple[Any, ...]:
-        """Values that determine the pairs: bodies, share with its shape, Poisson's ratios."""
-        share = np.asarray(self.share)
-        return self.cylinder, self.base, share.shape, share.tobytes(), self.poisson
-
     def __repr__(self) -> str:
         """Return the call that makes the pair; of many pairs their number and those of modes."""
         if self.shape:
@@ -267,6 +263,17 @@ class Bodies(OneOrMany):
         return (
             f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r}{poisson})"
         )
+
+
+def check_both(name: str, value: ArrayLike, **bounds: Any) -> Floats:
+    """Check an argument that is two numbers, of cylinder and base, and return them, (2,).
+
+    name, value, bounds: as in :func:`.arrays.check_array`, whose errors are raised too.
+    """
+    array = check_array(name, value, **bounds)
+    if array.shape != (2,):
+        raise shape_error(name, array.shape, "two numbers, of cylinder and base")
+    return array
 
 
 def total_series(material: float | Prony | Bodies) -> Prony:
@@ -354,6 +361,14 @@ class Cover(Bodies):
     on: Literal["cylinder", "base"] = "cylinder"
     other_nu: float = 0.5
     other_thickness: Any = None
+    _determined_by = (  # type: ignore[assignment]
+        *Bodies._determined_by,
+        "on",
+        "nu",
+        "thickness",
+        "other_nu",
+        "other_thickness",
+    )
 
     def __init__(
         self,
@@ -392,8 +407,11 @@ class Cover(Bodies):
         other = Prony.elastic() if other is None else other
         for name, body, also in (("series", series, "a number alpha"), ("other", other, "None")):
             if not isinstance(body, Prony) or body.shape:
-                allowed = f"a Prony series of one material, as vr.Prony([2.0], [0.1]), or {also}"
-                raise ParameterError(name, describe_value(body), allowed)
+                raise ParameterError(
+                    name,
+                    describe_value(body),
+                    f"a Prony series of one material, as vr.Prony([2.0], [0.1]), or {also}",
+                )
         check_choice("on", on, "cylinder", "base")
         ratio = check_array("nu", nu, low=0.0, high=0.5)
         other_nu = check_number("other_nu", other_nu, low=0.0, high=0.5)
@@ -404,11 +422,29 @@ class Cover(Bodies):
         if ratio.shape not in ((), given.shape):
             raise shape_error("nu", ratio.shape, "a number, or a list, one for each thickness")
         if other_thickness is not None:
-            other_thickness = read_only(self._check_other_thickness(other_thickness, given, part))
-        bodies = (series, other) if on == "cylinder" else (other, series)
+            second = check_array("other_thickness", other_thickness, above=0.0, high=_THICKEST)
+            if part == 1.0:
+                raise ParameterError(
+                    "other_thickness",
+                    second,
+                    "left out, or part < 1 be given: at part = 1, the default, the other body is "
+                    "rigid",
+                )
+            if second.shape != given.shape:
+                raise shape_error("other_thickness", second.shape, f"{given.shape}, as thickness")
+            # laws are interpolated as functions of one thickness
+            proportion = second / given
+            if np.ptp(proportion) > _SAME_RATIO * np.max(proportion):
+                raise described_error(
+                    "other_thickness",
+                    f"is {proportion.min():.9g} to {proportion.max():.9g} times thickness",
+                    "the same multiple for all covers",
+                )
+            other_thickness = read_only(second)
+        cylinder, base = (series, other) if on == "cylinder" else (other, series)
         vars(self).update(
-            cylinder=bodies[0],
-            base=bodies[1],
+            cylinder=cylinder,
+            base=base,
             share=part if on == "cylinder" else 1.0 - part,
             on=on,
             other_nu=other_nu,
@@ -419,36 +455,6 @@ class Cover(Bodies):
         super().__post_init__()
         # of the series and the share, which are single, the shape would be ()
         vars(self)["shape"] = given.shape
-
-    @staticmethod
-    def _check_other_thickness(value: ArrayLike, thickness: Any, part: float) -> Any:
-        """Check the thickness of the other layer.
-
-        value: thickness divided by l0, as the caller gave it.
-        thickness: thickness of the first layer divided by l0, an array, () or (n,).
-        part: part of the first layer in the compliance, in (0, 1].
-        Raises ParameterError for a value out of (0, 1e15], another shape, a rigid body (``part`` is
-        1), and ratios of the two thicknesses that differ by more than 1e-9: laws are interpolated
-        as functions of one thickness.
-        Returns ``value`` as an array of the shape of ``thickness``.
-        """
-        other = check_array("other_thickness", value, above=0.0, high=_THICKEST)
-        if part == 1.0:
-            raise ParameterError(
-                "other_thickness",
-                other,
-                "left out, or part < 1 be given: at part = 1, the default, the other body is rigid",
-            )
-        if other.shape != thickness.shape:
-            raise shape_error("other_thickness", other.shape, f"{thickness.shape}, as thickness")
-        ratio = other / thickness
-        if np.ptp(ratio) > _SAME_RATIO * np.max(ratio):
-            raise described_error(
-                "other_thickness",
-                f"is {ratio.min():.9g} to {ratio.max():.9g} times thickness",
-                "the same multiple for all covers",
-            )
-        return other
 
     @property
     def like(self) -> bool:
@@ -576,16 +582,8 @@ class Cover(Bodies):
 
     def __getitem__(self, which: Any) -> Cover:
         return self.of_thickness(
-            self.thickness[which], self.nu[which] if np.ndim(self.nu) else self.nu
+            self.thickness[which], self.nu[which] if np.ndim(self.nu) else None
         )
-
-    @cached_property
-    def _key(self) -> tuple[Any, ...]:
-        """Values that determine the covers: all parameters, arrays by their bytes."""
-        given = self.thickness, self.nu, self.other_thickness
-        numbers = [None if each is None else np.asarray(each).tobytes() for each in given]
-        shape = np.shape(self.thickness)
-        return self.layer, shape, *numbers, self.on, self.part, self.other_nu, self.other
 
     def __repr__(self) -> str:
         """Return the call that makes the cover, without parameters that have no effect."""

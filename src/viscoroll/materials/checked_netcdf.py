@@ -14,11 +14,11 @@ import io
 import shlex
 import sys
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -298,7 +298,6 @@ def check_law(content: Content, path: Any) -> None:
 
 # --- A material as netCDF that contains its series ---
 
-_Made = TypeVar("_Made")
 #: suffix of netCDF files
 SUFFIX = ".nc"
 #: attribute ``schema`` of a file; its number changes if an older version could not read the file
@@ -337,20 +336,19 @@ def material_as_dataset(material: Any) -> Dataset:
     series = material.prony
     band = material.measured
     shifts = shifts_as_toml(material.shift, material.vertical_shift)
-    held = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
-    held |= {name: getattr(material, name) for name in _OPTIONAL}
+    held = vars(material) | {"E_long": material.E, "alpha": series.alpha}
     held |= {f"measured_{name}": getattr(band, name, None) for name in _BAND}
     if band is not None and band.M_error:
-        held |= dict(zip(_ERRORS, np.transpose(band.M_error), strict=True))
+        held |= dict(zip(_ERRORS, np.transpose(band.M_error)))
     held |= {name: getattr(series, name) for names in _FORMS.values() for name in names}
     data = {
         name: (
-            ("rate" if name in _ERRORS else "mode",) * np.ndim(value),  # () of a number
-            value,
-            _MEANING[name],
+            ("rate" if name in _ERRORS else "mode",) * np.ndim(held[name]),  # () of a number
+            held[name],
+            labels,
         )
-        for name, value in held.items()
-        if value is not None
+        for name, labels in _MEANING.items()
+        if held.get(name) is not None
     }
     return xr.Dataset(
         data,
@@ -400,7 +398,7 @@ def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
     return found
 
 
-def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
+def load_material(path: FilePath, make: Any) -> Any:
     """Read a file of :meth:`viscoroll.Material.to_netcdf`.
 
     path: path of the file.
@@ -430,18 +428,16 @@ def load_material(path: FilePath, make: Callable[..., _Made]) -> _Made:
             "is cut, or was written by another program than viscoroll (no checksum at its end); "
             f"{_REWRITE}",
         )
-    if about.get("given") not in _FORMS:
+    given: Any = about.get("given")
+    if given not in _FORMS:
         raise FileError(
             path,
-            f"has the attribute given = {about.get('given')!r:.40}: must be "
-            f"{' or '.join(_FORMS)}; {_REWRITE}",
+            f"has the attribute given = {given!r:.40}: must be {' or '.join(_FORMS)}; {_REWRITE}",
         )
     try:
-        form = tuple(numbers[name] for name in _FORMS[about["given"]])
+        form = tuple(numbers[name] for name in _FORMS[given])
         series = (
-            Prony(*form)
-            if about["given"] == "relaxation"
-            else Prony.creep(*form, alpha=numbers["alpha"])
+            Prony(*form) if given == "relaxation" else Prony.creep(*form, alpha=numbers["alpha"])
         )
         found: dict[str, Any] = {
             name: numbers[name]

@@ -107,26 +107,20 @@ class FromPrograms:
         if tau is None:
             table = check_array("g", g, low=0.0)
             if table.ndim != 2 or table.shape[1] != 3:
-                sentence = (
+                raise ParameterError(
+                    "tau",
+                    None,
+                    "one time for each g",
                     "tau is not given: give a tau for each g, or the table of *VISCOELASTIC as g, "
-                    f"with rows (g_i, k_i, tau_i); g has shape {table.shape}"
+                    f"with rows (g_i, k_i, tau_i); g has shape {table.shape}",
                 )
-                raise ParameterError("tau", None, "one time for each g", sentence)
             if k is not None:
                 raise ParameterError(
                     "k", k, "left out where g has rows (g_i, k_i, tau_i), which contain it"
                 )
             g, k, tau = table.T
-        return cls._from_fractions(
-            E0,
-            nu,
-            name="g",
-            fractions=g,
-            tau=tau,
-            bulk=k,
-            long_term=check_bool("long_term", long_term),
-            more=more,
-        )
+        long_term = check_bool("long_term", long_term)
+        return cls._from_fractions(E0, nu, "g", g, tau, k, more, long_term)
 
     @classmethod
     def ansys(
@@ -180,9 +174,7 @@ class FromPrograms:
         >>> vr.Material.ansys(10e6, 0.49, alpha=[0.2, 0.3], tau=[0.1, 10.0]).E
         5000000.0
         """
-        return cls._from_fractions(
-            E0, nu, name="alpha", fractions=alpha, tau=tau, bulk=k, long_term=False, more=more
-        )
+        return cls._from_fractions(E0, nu, "alpha", alpha, tau, k, more)
 
     @classmethod
     def comsol(
@@ -235,9 +227,8 @@ class FromPrograms:
         nu = check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
         bulk = None if K is None else check_pairs("K", K, "tau", times)[0]
-        return cls._from_moduli(
-            E / (2.0 * (1.0 + nu)), nu, G=strengths, tau=times, K=bulk, more=more, E=E
-        )
+        G_inf = E / (2.0 * (1.0 + nu))
+        return cls._from_moduli(G_inf, nu, strengths, times, bulk, more, E=E)
 
     @classmethod
     def lsdyna(
@@ -298,13 +289,14 @@ class FromPrograms:
         >>> vr.Material.lsdyna(G=[2e6, 1e6], beta=[100.0, 0.0], nu=0.5).E
         3000000.0
         """
-        strengths, rates = check_pairs("G", G, "beta", beta, above=-math.inf)
+        strengths, rates = check_pairs("G", G, "beta", beta)
         resting = rates == 0.0
         rest = _long_time_shear(strengths, G0, G_inf, strengths[resting])
         strengths = strengths[~resting]
         times = 1.0 / rates[~resting]  # beta = 0 is the long-time modulus, no mode
-        terms = None if K is None else check_pairs("K", K, "beta", rates, above=-math.inf)[0]
-        if terms is not None:
+        terms = None
+        if K is not None:
+            terms, _ = check_pairs("K", K, "beta", rates)
             if terms[resting].any():
                 if nu is not None or bulk is not None:
                     raise exactly_one_error("nu (or bulk)", "a K with beta = 0", both=True)
@@ -316,9 +308,7 @@ class FromPrograms:
             nu = _poisson(rest, bulk)
             # a bulk modulus that does not relax
             terms = np.zeros_like(strengths) if terms is None else terms
-        return cls._from_moduli(
-            rest, check_poisson(nu), G=strengths, tau=times, K=terms, more=more, K_inf=bulk
-        )
+        return cls._from_moduli(rest, check_poisson(nu), strengths, times, terms, more, K_inf=bulk)
 
     @classmethod
     def from_netcdf(cls, path: FilePath) -> Self:
@@ -361,8 +351,8 @@ class FromPrograms:
         fractions: ArrayLike,
         tau: ArrayLike,
         bulk: ArrayLike | None,
-        long_term: bool,
         more: dict[str, Any],
+        long_term: bool = False,
     ) -> Any:
         """Make a material from terms that are fractions of the instantaneous moduli.
 
@@ -377,8 +367,8 @@ class FromPrograms:
         bulk: k_i, dimensionless, (terms,), >= 0, with a sum below 1; None: k_i = g_i, so that nu is
             constant in time.  At nu = 0.5, where K is infinite, they are checked and have no
             effect.
-        long_term: True: E and nu are those of long times; False: they are instantaneous.
         more: further keywords of the material, name -> value, as "name" and "density".
+        long_term: True: E and nu are those of long times; False: they are instantaneous.
         Returns the material, of the class ``cls``, with E and nu of long times.
         Raises ParameterError for values out of range, lists of different lengths, too many terms,
         and an unknown keyword.
@@ -389,25 +379,17 @@ class FromPrograms:
         rest = _remaining_fraction(name, values)
         others = values if bulk is None else check_pairs("k", bulk, "tau", times)[0]
         if np.array_equal(values, others):  # nu is constant in time
-            return cls._from_moduli(
-                1.0,
-                nu,
-                G=values / rest,
-                tau=times,
-                K=None,
-                more=more,
-                E=E if long_term else E * rest,
-            )
+            late = E if long_term else E * rest
+            return cls._from_moduli(1.0, nu, values / rest, times, None, more, E=late)
         rest_of_bulk = _remaining_fraction("k", others)
         G = E / (2.0 * (1.0 + nu))
-        K = E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
+        # of an incompressible body, which has no bulk strain, K has no effect
+        K = E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else 1.0
         G, K = (G, K) if long_term else (G * rest, K * rest_of_bulk)
         if nu < 0.5:  # nu of long times
             nu = _poisson(G, K)
-        bulk_terms = others / rest_of_bulk * (K if nu < 0.5 else 1.0)
-        return cls._from_moduli(
-            G, nu, G=values / rest * G, tau=times, K=bulk_terms, more=more, K_inf=K
-        )
+        bulk_terms = others / rest_of_bulk * K
+        return cls._from_moduli(G, nu, values / rest * G, times, bulk_terms, more, K_inf=K)
 
     @classmethod
     def _from_moduli(
@@ -443,7 +425,7 @@ class FromPrograms:
         if K is not None and nu < 0.5:  # an incompressible body has no bulk strain that could relax
             K_inf = E / (3.0 * (1.0 - 2.0 * nu)) if K_inf is None else K_inf
             if not np.array_equal(K * G_inf, G * K_inf):
-                prony = plane_strain(G_inf, G, K_inf=K_inf, K=K, tau=tau)
+                prony = plane_strain(G_inf, G, K_inf, K, tau)
                 early = _poisson(G_inf + math.fsum(G), K_inf + math.fsum(K))
             _warn_of_low_poisson(G_inf, G, K_inf, K, tau)
         check_names("argument", more, _MATERIAL_KEYWORDS, "known beside moduli and times")
@@ -457,10 +439,7 @@ def check_poisson(nu: Any, name: str = "nu") -> float:
     name: name of the argument, for the error.
     Raises ParameterError for what is no number in (-1, 0.5].
     """
-    nu = check_number(name, nu)
-    if not -1.0 < nu <= 0.5:
-        raise ParameterError(name, nu, "in (-1, 0.5]")
-    return nu
+    return check_number(name, nu, above=-1.0, high=0.5)
 
 
 def _poisson(G: Any, K: Any) -> Any:
@@ -482,36 +461,37 @@ def _warn_of_low_poisson(G_inf: float, G: Floats, K_inf: float, K: Floats, tau: 
     left = np.vstack([np.exp(-ratio), np.zeros_like(tau)])
     lowest = np.min(_poisson(G_inf + left @ G, K_inf + left @ K))
     if lowest < _LEAST_POISSON:
-        text = (
+        warn_of_model(
             f"shear and bulk terms give Poisson's ratio {lowest:.3g} at some time, and no rubber "
             f"has less than {_LEAST_POISSON:g}: check that both are in the same unit, as fractions "
             "of moduli for abaqus and ansys, as moduli in Pa for comsol and lsdyna"
         )
-        warn_of_model(text)
 
 
-def check_pairs(
-    name: str, values: ArrayLike, other: str, at: ArrayLike, *, above: float = 0.0
-) -> tuple[Floats, Floats]:
+def check_pairs(name: str, values: ArrayLike, other: str, at: ArrayLike) -> tuple[Floats, Floats]:
     """Check two lists of equal length, and return them as arrays in SI units.
 
     name, values: name of the first list, for errors, and its numbers, >= 0; in Pa if it is called G
         or K, else dimensionless.  Values with a unit are converted.
-    other, at: name of the second list, for errors, and its numbers, > 0; in s if it is called tau,
-        else in 1/s.
-    above: 0 (default): numbers of the second list must be > 0; -inf: they may be 0 too.
+    other, at: name of the second list, for errors, and its numbers; times in s, > 0, if it is
+        called tau, else rates in 1/s, >= 0.
     Returns (numbers of the first list, numbers of the second), (n,) each; n may be 0.
     Raises ParameterError for numbers out of range, lists of different lengths, and other shapes
     than (n,).
     """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
-    second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
+    bounds = {"unit": "s", "above": 0.0} if other == "tau" else {"unit": "s-1", "low": 0.0}
+    second = check_array(other, at, **bounds)
     if first.ndim != 1:
-        allowed = f"a list, as [0.1, 0.2], with one number for each {other}"
-        raise shape_error(name, first.shape, allowed)
+        raise shape_error(
+            name, first.shape, f"a list, as [0.1, 0.2], with one number for each {other}"
+        )
     if first.shape != second.shape:
-        found = f"has shape {first.shape} and {other} has shape {second.shape}"
-        raise described_error(name, found, "lists of the same length")
+        raise described_error(
+            name,
+            f"has shape {first.shape} and {other} has shape {second.shape}",
+            "lists of the same length",
+        )
     return first, second
 
 
@@ -533,9 +513,11 @@ def _long_time_shear(
     }
     given = {name: value for name, value in ways.items() if value is not None}
     if len(given) != 1:
-        found = f"is given by {' and '.join(given) or 'no argument'}"
-        allowed = "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0"
-        raise described_error("the long-time shear modulus", found, allowed)
+        raise described_error(
+            "the long-time shear modulus",
+            f"is given by {' and '.join(given) or 'no argument'}",
+            "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0",
+        )
     name, value = given.popitem()
     named = {"G0": "long-time G0 - sum of G", "beta = 0": "long-time G (of zero beta)"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
@@ -551,8 +533,11 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:
-        allowed = "below 1, since 1 minus this sum is the part of the modulus left at long times"
-        raise ParameterError(f"sum of {name}", f"{1.0 - rest:g}", allowed)
+        raise ParameterError(
+            f"sum of {name}",
+            f"{1.0 - rest:g}",
+            "below 1, since 1 minus this sum is the part of the modulus left at long times",
+        )
     return rest
 
 

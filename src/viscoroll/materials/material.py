@@ -23,6 +23,7 @@ from ..core import (
     check_number,
     check_text,
     describe_value,
+    shape_error,
 )
 from .importers import FromPrograms, check_poisson
 from .measured_data import Measured, check_celsius, check_fields, relative_shift, vertical_factor
@@ -99,40 +100,38 @@ class Material(FromPrograms):
         """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees
         Celsius).
 
-        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be
-        finite and > 0, nu in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither
-        relax nor have a thickness.
-        Raises ParameterError for the first field that is not allowed.  A temperature outside -150
-        to 200 warns with ModelWarning, as it looks like kelvin
-        (:func:`.measured_data.check_celsius`).
+        E (unless infinite), T_ref, density and thickness must be finite and > 0, nu in (-1, 0.5];
+        ``prony`` must be one series; a rigid body must neither relax nor have a thickness.
+        Raises ParameterError for the first field that is not allowed, and warns as the class says.
         """
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError(
                 "prony", describe_value(self.prony), "one Prony series, as vr.Prony([2.0], [0.1])"
             )
+        values = vars(self)  # by it, as the class is frozen
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
-            object.__setattr__(self, "E", math.inf)
+            values["E"] = math.inf
             if self.prony.alpha > 1.0:
                 raise ParameterError("E", self.E, "finite for a viscoelastic material (inf: rigid)")
             if self.thickness is not None:
                 raise ParameterError("thickness", self.thickness, "left out for a rigid body")
         else:
-            check_fields(self, E=0.0)
-        object.__setattr__(self, "nu", check_poisson(self.nu))
+            check_fields(self, "E")
+        values["nu"] = check_poisson(self.nu)
         if self.nu_instant is not None:
-            object.__setattr__(self, "nu_instant", check_poisson(self.nu_instant, "nu_instant"))
+            values["nu_instant"] = check_poisson(self.nu_instant, "nu_instant")
         check_text("name", self.name)
         given = [name for name in ("density", "thickness") if getattr(self, name) is not None]
-        check_fields(self, SI, **dict.fromkeys(["T_ref", *given], 0.0))
+        check_fields(self, "T_ref", *given)
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", describe_value(self.measured), "a vr.Measured")
         if self.temperature is not None:
-            object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
+            values["temperature"] = check_celsius("temperature", self.temperature)
         if self.shift is not None:
-            _refuse_no_shift("shift", self.shift, "vr.WLF(...), vr.Arrhenius(...)")
+            _check_shift("shift", self.shift, "vr.WLF(...), vr.Arrhenius(...)")
         vertical = self.vertical_shift
         if not (isinstance(vertical, str | None) and vertical in (None, "entropic")):
-            _refuse_no_shift("vertical_shift", vertical, "'entropic'")
+            _check_shift("vertical_shift", vertical, "'entropic'")
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -250,9 +249,8 @@ class Material(FromPrograms):
         Of a material with ``nu_instant`` alpha is that of E/(1 - nu^2), so that the modulus is E
         alpha (1 - nu_instant^2)/(1 - nu^2).
         """
-        late = self.nu
         early = self.nu if self.nu_instant is None else self.nu_instant
-        return self.E * self.prony.alpha * (1.0 - early**2) / (1.0 - late**2)
+        return self.E * self.prony.alpha * (1.0 - early**2) / (1.0 - self.nu**2)
 
     @property
     def G(self) -> float:
@@ -300,19 +298,17 @@ class Material(FromPrograms):
         >>> rubber.at(20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=-10.0)) == rubber
         True
         """
-        shift = self.shift if shift is None else shift
         allowed = "given to the Material or to at(), as vr.WLF(...), vr.Arrhenius(...)"
-        _refuse_no_shift("shift", shift, allowed)
-        assert shift is not None
+        shift = _check_shift("shift", self.shift if shift is None else shift, allowed)
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
-            sentence = (
-                f"temperature is an array of shape {given.shape}, but a material has one "
-                "temperature: make a list, [rubber.at(T, shift) for T in temperatures], or write "
-                "a run file, in which temperature of [material] may be a column or a distribution "
-                "(docs/ensembles.md)"
+            raise shape_error(
+                "temperature",
+                given.shape,
+                "one number, as a material has one temperature: make a list, [rubber.at(T, shift) "
+                "for T in temperatures], or write a run file, in which temperature of [material] "
+                "may be a column or a distribution (docs/ensembles.md)",
             )
-            raise ParameterError("temperature", given.shape, "one number", sentence)
         temperature = check_celsius("temperature", float(given))
         factor = relative_shift(shift, temperature, self.temperature)
         measured = None if self.measured is None else self.measured.shifted(factor)
@@ -591,10 +587,14 @@ class Material(FromPrograms):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
-def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
-    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called; the
-    words ``allowed`` say what is allowed beside a function.
+def _check_shift(name: str, shift: Any, allowed: str) -> Any:
+    """Return the ``shift`` of the argument ``name``; raise ParameterError where it cannot be
+    called.  The words ``allowed`` say what is allowed beside a function.
     """
     if not callable(shift) or isinstance(shift, type):
-        allowed = f"{allowed} or a function of the temperature in degrees Celsius"
-        raise ParameterError(name, describe_value(shift), allowed)
+        raise ParameterError(
+            name,
+            describe_value(shift),
+            f"{allowed} or a function of the temperature in degrees Celsius",
+        )
+    return shift

@@ -176,11 +176,9 @@ def material_as_toml(material: Material, section: str = "material") -> str:
     left out.
     """
     band = material.measured
-    values = {
-        name: getattr(material, name)
-        for name in ("E", "nu", "nu_instant", "T_ref", "density", "thickness")
-    }
-    values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
+    names = ("E", "nu", "nu_instant", "T_ref", "density", "thickness")
+    values = {"name": _quote(material.name), **{name: getattr(material, name) for name in names}}
+    values["reference"] = material.temperature
     strain = "" if band is None or band.strain is None else f", strain = {band.strain}"
     values["measured"] = band and (
         f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = "
@@ -228,11 +226,13 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
     if not (isinstance(content, dict) and "file" in content):
         return as_struct(path, name, content, MaterialSection)
     for key in content.keys() & MaterialSection.__annotations__.keys() - {"file"}:
-        problem = (
+        raise section_error(
+            path,
+            name,
+            key,
             f"{key} must be left out beside the key file: to change {key}, write the content "
-            "of that file here in place of file"
+            "of that file here in place of file",
         )
-        raise section_error(path, name, key, problem)
     return as_struct(path, name, content, FileSection)
 
 
@@ -252,7 +252,11 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
     given = {key: value for key, value in vars(section).items() if value is not None}
     temperature = given.pop("temperature", None)
     with as_section_error(path, name):
-        if shift := _shift_of(path, name, section):
+        if section.wlf and section.arrhenius:
+            raise section_error(
+                path, name, "arrhenius", "wlf and arrhenius are both given: give one of the two"
+            )
+        if shift := section.wlf or section.arrhenius:
             given["shift"] = given.pop(type(shift).__name__.lower())
         if section.file is None:
             material = _make_material(path, name, given)
@@ -265,10 +269,12 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
         if temperature is None:
             return material
         if material.shift is None:
-            problem = (
-                f"temperature = {temperature:g}: needs wlf or arrhenius too, to shift the times"
+            raise section_error(
+                path,
+                name,
+                "temperature",
+                f"temperature = {temperature:g}: needs wlf or arrhenius too, to shift the times",
             )
-            raise section_error(path, name, "temperature", problem)
         return material.at(temperature)
 
 
@@ -303,8 +309,9 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
             if other.suffix.lower() in (SUFFIX, ".toml")
             else "; it must be a .toml with [material], or the .nc of a material or its law"
         )
-        problem = f"the key file names a file that cannot be used ({error}){advice}"
-        raise section_error(path, name, "file", problem) from error
+        raise section_error(
+            path, name, "file", f"the key file names a file that cannot be used ({error}){advice}"
+        ) from error
 
 
 def _material_of_law(path: Path) -> Material:
@@ -355,18 +362,18 @@ def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
     if "reference" in given:
         reference = given.pop("reference")
         given["temperature"] = check_number("reference", reference, above=ABSOLUTE_ZERO)
-    forms: dict[str, Any] = {
-        key: vars(given.pop(key)) for key in ("prony", "creep") if key in given
-    }
+    forms = {key: vars(given.pop(key)) for key in ("prony", "creep") if key in given}
     if series := parse_series(path, name, forms):
         given["prony"] = series
     if times := given.keys() & {"T_epsilon", "T_sigma"}:
         if len(times) == 1 or given.keys() & {"T_ref", "prony"}:
-            problem = (
+            raise section_error(
+                path,
+                name,
+                "",
                 "T_epsilon and T_sigma (s), a standard linear solid, must be given together, "
-                "and without T_ref, prony and creep"
+                "and without T_ref, prony and creep",
             )
-            raise section_error(path, name, "", problem)
         return Material.sls(**given)
     return Material(**given)
 
@@ -403,18 +410,3 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
         ):  # E is a key of the material too: name the line of the series
             return Prony(**columns) if key == "prony" else Prony.creep(**columns)
     return None
-
-
-def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | None:
-    """Return the time-temperature shift of a section by its key wlf or arrhenius.
-
-    path, name: path of the file and name of the section, for errors.
-    section: :class:`FileSection`, checked content of the section.
-    Returns the :class:`WLF` or :class:`Arrhenius`, None if neither key is given.
-    Raises FileError for both keys.
-    """
-    if section.wlf is not None and section.arrhenius is not None:
-        raise section_error(
-            path, name, "arrhenius", "wlf and arrhenius are both given: give one of the two"
-        )
-    return section.wlf or section.arrhenius

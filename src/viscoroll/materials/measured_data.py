@@ -55,8 +55,8 @@ class _ShiftLaw:
 
     def __post_init__(self: Any) -> None:
         """Check T0, degrees Celsius, and the other fields, which must be > 0."""
-        check_fields(self, SI, **dict.fromkeys([name for name in vars(self) if name != "T0"], 0.0))
-        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
+        check_fields(self, *(name for name in vars(self) if name != "T0"))
+        vars(self)["T0"] = check_celsius("T0", self.T0)
 
     def __call__(self: Any, temperature: float) -> float:
         """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
@@ -225,9 +225,12 @@ class ShiftFactors:
         low = self.temperature[0]
         high = self.temperature[-1]
         if not low - NEAR <= found <= high + NEAR:
-            allowed = f"in [{low - NEAR}, {high + NEAR}] °C, near to found factors; for others use "
-            allowed += "the law that wlf() or arrhenius() of these factors returns"
-            raise ParameterError("temperature", temperature, allowed)
+            raise ParameterError(
+                "temperature",
+                temperature,
+                f"in [{low - NEAR}, {high + NEAR}] °C, near to found factors; for others use the "
+                "law that wlf() or arrhenius() of these factors returns",
+            )
         if low == high:
             return self.a_T[0]
         return math.exp(self._ln(found))
@@ -292,7 +295,7 @@ class ShiftFactors:
             errors, start, bounds=([-np.inf, low], [np.inf, high]), xtol=1e-12, ftol=1e-12
         )
         C1, C2 = constants(found.x)
-        return self._told(WLF(C1=float(C1), C2=float(C2), T0=self.T0))
+        return self._told(WLF(C1=C1, C2=C2, T0=self.T0))
 
     def arrhenius(self) -> Arrhenius:
         """Fit the law of Arrhenius to the factors, as :meth:`wlf` does its own.
@@ -324,7 +327,7 @@ class ShiftFactors:
         kelvin = self.T0 - ABSOLUTE_ZERO
         slower = 1.0 / (kelvin + above) - 1.0 / kelvin
         energy = GAS_CONSTANT * math.log(10.0) * (slower @ logs) / (slower @ slower)
-        return self._told(Arrhenius(energy=float(energy), T0=self.T0))
+        return self._told(Arrhenius(energy=energy, T0=self.T0))
 
     def _points(self, fewest: int) -> tuple[Any, Any]:
         """Return (temperature - T0, K; log10 a_T), (n,) each, to which a law can be fitted.
@@ -334,9 +337,8 @@ class ShiftFactors:
         first to the last.
         """
         if len(self.a_T) < fewest:
-            found = f"has {len(self.a_T)} values"
             allowed = f"a list of at least {fewest}, to fit this law"
-            raise described_error("temperature", found, allowed)
+            raise described_error("temperature", f"has {len(self.a_T)} values", allowed)
         if not self.a_T[-1] < self.a_T[0]:
             found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
             raise ParameterError("a_T", found, "shift factors that fall with temperature")
@@ -346,16 +348,13 @@ class ShiftFactors:
         """Return a fitted ``law`` as it is; give a ModelWarning if it misses one of the factors
         a_T by more than :data:`_FAR_OFF`, 0.1 decades.
         """
-        errors = [
-            math.log10(law(T) / a_T) for T, a_T in zip(self.temperature, self.a_T, strict=True)
-        ]
+        errors = [math.log10(law(T) / a_T) for T, a_T in zip(self.temperature, self.a_T)]
         worst = int(np.argmax(np.abs(errors)))
         if abs(errors[worst]) > _FAR_OFF:
-            text = (
+            warn_of_model(
                 f"{law} gives {10.0 ** errors[worst]:.3g} times the shift factor that was found at "
                 f"{self.temperature[worst]:g} °C: use the found factors in place of this law"
             )
-            warn_of_model(text)
         return law
 
 
@@ -369,13 +368,12 @@ def check_celsius(name: str, temperature: Any) -> float:
     Warns with ModelWarning outside :data:`USUAL_RANGE`, by a text without the value.
     """
     found = check_number(name, temperature, unit="degC", above=ABSOLUTE_ZERO)
-    if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
-        low, high = USUAL_RANGE
-        text = (
+    low, high = USUAL_RANGE
+    if not low <= found <= high:
+        warn_of_model(
             f"{name} is outside {low:g} to {high:g}: the unit is degrees Celsius, and this "
             "looks like kelvin, or like a value that was converted twice"
         )
-        warn_of_model(text)
     return found
 
 
@@ -432,19 +430,17 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
     return factor / unit
 
 
-def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
-    """Check that fields of a frozen dataclass are numbers above lower bounds, and replace them by
-    floats in their unit.
+def check_fields(instance: Any, *names: str, unit: Units = SI) -> None:
+    """Check that fields of a frozen dataclass are numbers > 0, and replace them by floats in their
+    unit.
 
     instance: the dataclass, whose fields are changed in place, one after another up to an error.
+    names: names of the fields.
     unit: unit of all these fields, as "rad s-1", or an object with units by name, as SI (default).
-    lows: lower bound of each field by name, in that unit; the number must be larger.
     Raises ParameterError for the first field that is no such finite number (also None, an array).
     """
-    for name, low in lows.items():
-        object.__setattr__(
-            instance, name, check_number(name, getattr(instance, name), unit=unit, above=low)
-        )
+    for name in names:
+        vars(instance)[name] = check_number(name, getattr(instance, name), unit=unit, above=0.0)
 
 
 # --- The data that a material was fitted to ---
@@ -495,8 +491,8 @@ class Measured:
         """Check the fields, and replace the numbers by floats, converted to rad/s; a source that is
         no text, or has NUL or surrogates, is refused too.
         """
-        check_fields(self, "rad s-1", low=0.0, high=0.0)
-        object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
+        check_fields(self, "low", "high", unit="rad s-1")
+        vars(self)["misfit"] = check_number("misfit", self.misfit, low=0.0)
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low} (both in rad/s)")
         check_text("source", self.source)
@@ -504,9 +500,9 @@ class Measured:
         if pairs.size % 2 or not (np.diff(pairs.ravel()[::2]) > 0.0).all():
             allowed = "pairs (transit frequency in 1/s, relative error of M), by rising frequency"
             raise described_error("M_error", "is not in pairs, or not sorted", allowed)
-        object.__setattr__(self, "M_error", tuple(map(tuple, pairs.reshape(-1, 2).tolist())))
+        vars(self)["M_error"] = tuple(map(tuple, pairs.reshape(-1, 2).tolist()))
         if self.strain is not None:
-            check_fields(self, "1", strain=0.0)
+            check_fields(self, "strain", unit="1")
 
     @property
     def transit_band(self) -> tuple[float, float]:

@@ -49,10 +49,8 @@ class Solid(NamedTuple):
     thickness: Any = None
     nu_instant: float | None = None
 
-    @property
-    def G(self) -> Any:
-        """Long-time shear modulus E/(2 (1 + nu)), Pa, a number or (n,)."""
-        return self.E / (2.0 * (1.0 + self.nu))
+    #: long-time shear modulus, Pa, a number or (n,)
+    G = Material.G  # type: ignore[misc]
 
 
 @dataclass(frozen=True)
@@ -83,12 +81,10 @@ class Pair:
         checked without a layer.
         Raises ParameterError as the class states.
         """
-        for name in ("cylinder", "base"):
-            body = getattr(self, name)
-            if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
-                named = "material" if name == "cylinder" else name
+        for name, body in zip(("material", "base"), self.bodies):
+            if not isinstance(body, Material | Solid):
                 raise ParameterError(
-                    named, describe_value(body), "a Material, as vr.Material(E=..., nu=...)"
+                    name, describe_value(body), "a Material, as vr.Material(E=..., nu=...)"
                 )
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
             raise ParameterError("base", "rigid", "a deformable body, since the cylinder is rigid")
@@ -96,9 +92,9 @@ class Pair:
             raise ParameterError(
                 "plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)"
             )
-        for body in (self.cylinder, self.half_space):
-            layered = body.thickness is not None
-            if body.nu_instant is not None and (layered or self.plane != "strain"):
+        for body in self.bodies:
+            half_space = body.thickness is None and self.plane == "strain"
+            if body.nu_instant is not None and not half_space:
                 raise described_error(
                     "nu_instant",
                     "is given, as by bulk terms unlike those of shear, and the series of such a "
@@ -107,7 +103,7 @@ class Pair:
                 )
 
     @property
-    def covered(self) -> Literal["cylinder", "base"] | None:
+    def covered(self) -> Any:
         """Name of the body that is a layer of finite thickness, of two layers "cylinder", or
         None.
         """
@@ -121,6 +117,11 @@ class Pair:
         return self.cylinder if self.base is None else self.base
 
     @property
+    def bodies(self) -> tuple[Any, Any]:
+        """Materials of the cylinder and of the half-space."""
+        return self.cylinder, self.half_space
+
+    @property
     def like(self) -> bool:
         """Whether both bodies deform and relax alike: one body is given for both, or E, nu, series
         and T_ref are equal.
@@ -128,21 +129,17 @@ class Pair:
         Two different objects of which one is a :class:`Solid` are never alike: its fields may be
         arrays of many bodies, which have no single answer.  A thickness is not compared.
         """
-        one = self.cylinder
-        other = self.half_space
+        one, other = self.bodies
         if one is other or Solid in (type(one), type(other)):
             return one is other
-        names = ("E", "nu", "prony", "T_ref")
-        return all(getattr(one, name) == getattr(other, name) for name in names)
+        return all(
+            getattr(one, name) == getattr(other, name) for name in ("E", "nu", "prony", "T_ref")
+        )
 
     @cached_property
-    def _moduli(self) -> tuple[Any, Any]:
+    def _moduli(self) -> list[Any]:
         """E' of the cylinder and of the half-space at long times, Pa."""
-        one = self.cylinder
-        other = self.half_space
-        return effective_modulus(one.E, one.nu, self.plane), effective_modulus(
-            other.E, other.nu, self.plane
-        )
+        return [effective_modulus(body.E, body.nu, self.plane) for body in self.bodies]
 
     @property
     def E_prime(self) -> Any:
@@ -189,27 +186,26 @@ class Pair:
         ------
         ParameterError
             A body with a thickness: its law depends on the load and the radius too
-            (:meth:`bodies`);
+            (:meth:`cover`);
             a time of the other body that no double holds in units of ``T_ref``; n pairs of more
             than 64 modes; many series and many parts of the compliance whose numbers differ.
         """
         if self.covered is not None:
-            allowed = (
+            raise described_error(
+                f"thickness of the {self.covered}",
+                "is given",
                 "left out here, as the law of a layer depends on load and radius too; give a "
-                "Cylinder of these materials"
+                "Cylinder of these materials",
             )
-            raise described_error(f"thickness of the {self.covered}", "is given", allowed)
         if self.like:
             return self.cylinder.prony
-        one, other = (
-            body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space)
-        )
-        ratios = [np.asarray(body.nu) for body in (self.cylinder, self.half_space)]
-        if any(nu.shape for nu in ratios):
-            return Bodies(one, other, self.share)
-        # plane stress is plane strain with another ratio
-        strain = [float(nu if self.plane == "strain" else nu / (1.0 + nu)) for nu in ratios]
-        return Bodies(one, other, self.share, (strain[0], strain[1]))
+        one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in self.bodies)
+        ratios: Any = [body.nu for body in self.bodies]
+        if any(map(np.ndim, ratios)):
+            ratios = None
+        elif self.plane != "strain":  # as plane strain with another ratio
+            ratios = [nu / (1.0 + nu) for nu in ratios]
+        return Bodies(one, other, self.share, ratios)
 
     def cover(self, l0: Any) -> Cover:
         """Return the layer of finite thickness and the other body, a layer or not, as a
@@ -233,30 +229,25 @@ class Pair:
             Many series; beside a body that is not rigid many parts of the compliance, or an array
             of its nu; a thickness or Poisson's ratio out of the range of :class:`Cover`; a time
             that no double holds in units of ``T_ref``.
-        AssertionError
-            If no body has a thickness.
         """
         on = self.covered
-        assert on is not None
-        layer, other = (
-            (self.cylinder, self.half_space)
-            if on == "cylinder"
-            else (self.half_space, self.cylinder)
-        )
+        layer, other = self.bodies if on == "cylinder" else self.bodies[::-1]
         parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
         found = "has several values"
         if layer.prony.shape:
-            allowed = (
+            raise described_error(
+                f"the Prony series of the cover ({on})",
+                found,
                 "one for all cylinders (thickness, load and R may differ, and beside a rigid body "
-                "E and nu)"
+                "E and nu)",
             )
-            raise described_error(f"the Prony series of the cover ({on})", found, allowed)
         if np.ptp(parts) > 0.0:
-            allowed = (
+            raise described_error(
+                "E or nu of a body",
+                found,
                 "one for all cylinders where a cover lies beside a body that is not rigid: let "
-                "thickness, load or R differ, or make that body rigid (E = inf)"
+                "thickness, load or R differ, or make that body rigid (E = inf)",
             )
-            raise described_error("E or nu of a body", found, allowed)
         # both in the unit of time of the pair
         series, other_series = (
             body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other)
@@ -282,8 +273,11 @@ class Pair:
             return
         broadcast_shape(thickness=thickness, R=R)
         if (np.asarray(thickness) > R).any():
-            found = f"of the layer on the cylinder is {format_value(thickness)} m"
-            raise described_error("thickness", found, f"at most R = {format_value(R)} m")
+            raise described_error(
+                "thickness",
+                f"of the layer on the cylinder is {format_value(thickness)} m",
+                f"at most R = {format_value(R)} m",
+            )
 
     def refuse_other_cover(self, cover: Any, l0: Any) -> None:
         """Raise ParameterError where the law of a layer is that of another load or radius, and for
@@ -295,10 +289,12 @@ class Pair:
         """
         own = self.cover(l0)
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
-            found = f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}"
-            allowed = f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
-            allowed += "contact length at rest of half-spaces); make the law with this load and R"
-            raise described_error("material", found, allowed)
+            raise described_error(
+                "material",
+                f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}",
+                f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
+                "contact length at rest of half-spaces); make the law with this load and R",
+            )
 
     def refuse_coupled_ratios(self, law: Prony | Bodies | Cover, limit: float) -> None:
         """Raise ParameterError where half-spaces with an array of nu need the coupled solution.
@@ -321,10 +317,9 @@ class Pair:
         may be rigid.  It is exactly (0.0, 0.0) for like bodies.
         """
         of_pairs = np.vectorize(dundurs, otypes=[float])
-        bodies = self.cylinder, self.half_space
-        late = [(body.G, body.nu) for body in bodies]
+        late = [(body.G, body.nu) for body in self.bodies]
         early = []
-        for body in bodies:
+        for body in self.bodies:
             nu = body.nu if body.nu_instant is None else body.nu_instant
             # alpha is that of E/(1 - nu^2) = 2 G/(1 - nu)
             early.append((body.G * body.prony.alpha * ((1.0 - nu) / (1.0 - body.nu)), nu))

@@ -28,6 +28,7 @@ from ..core import (
     broadcast_shape,
     check_array,
     described_error,
+    read_only,
     shape_error,
 )
 from .prony_forms import (
@@ -69,11 +70,16 @@ class OneOrMany:
 
     #: () or (n,)
     shape: tuple[int, ...]
-    #: values that determine the material
-    _key: Any
+    #: method that returns one of n materials for an index, some for a slice
+    __getitem__: Any
+    #: names of the attributes that determine the material
+    _determined_by: tuple[str, ...]
 
-    def __getitem__(self, which: Any) -> Any:
-        raise NotImplementedError
+    @cached_property
+    def _key(self) -> tuple[Any, ...]:
+        """Values that determine the material, arrays by their shape and bytes."""
+        values = (getattr(self, name) for name in self._determined_by)
+        return tuple((x.shape, x.tobytes()) if isinstance(x, np.ndarray) else x for x in values)
 
     def __len__(self) -> int:
         if not self.shape:
@@ -134,6 +140,7 @@ class Prony(OneOrMany):
 
     alpha: Any
     by_creep: bool
+    _determined_by = "by_creep", "_strengths", "_times", "alpha"
 
     def __init__(self, E: ArrayLike = (), tau: ArrayLike = ()) -> None:
         """Make one or many materials from their relaxation modulus, divided by its long-time value.
@@ -144,7 +151,7 @@ class Prony(OneOrMany):
         Raises ParameterError as the class states, and for shapes that do not fit, also for two
         single numbers.
         """
-        strengths, times = _check_modes(("E", "tau"), E, tau)
+        strengths, times = _check_modes(E=E, tau=tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
             allowed = f"at most {HIGHEST_ALPHA:g}, as each E is divided by the long-time modulus"
@@ -184,13 +191,14 @@ class Prony(OneOrMany):
         >>> vr.Prony.creep(J=[0.75], T=[1.0]).alpha
         4.0
         """
-        strengths, times = _check_modes(("J", "T"), J, T)
+        strengths, times = _check_modes(J=J, T=T)
         rest = np.asarray(1.0 - _exact_sums(strengths))
         if not (rest > 0.0).all():
-            allowed = (
-                "below 1, since 1 minus this sum is the instantaneous compliance, which is > 0"
+            raise ParameterError(
+                "sum of J",
+                f"{1.0 - rest.min()!s}",
+                "below 1, since 1 minus this sum is the instantaneous compliance, which is > 0",
             )
-            raise ParameterError("sum of J", f"{1.0 - rest.min()!s}", allowed)
         given = (
             1.0 / rest
             if alpha is None
@@ -207,7 +215,7 @@ class Prony(OneOrMany):
             raise ParameterError(
                 "J", strengths.tolist(), f"such that 1/(1 - sum of J) is at most {HIGHEST_ALPHA:g}"
             )
-        return cls._make(True, strengths, times, given if given.ndim else float(given))
+        return cls._make(True, strengths, times, given)
 
     @classmethod
     def elastic(cls) -> Prony:
@@ -240,13 +248,14 @@ class Prony(OneOrMany):
         strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength
             last; dimensionless, times in units of T_ref.  Contiguous arrays are kept and locked
             themselves, of others a copy.
-        alpha: instantaneous divided by long-time modulus, a number or (n,).
+        alpha: instantaneous divided by long-time modulus, a number, or an array () or (n,), which
+            is copied.
         These are ``by_creep``, ``shape``, ``alpha``, ``_strengths`` and ``_times``.
         """
         self.by_creep = by_creep
         self.shape = strengths.shape[:-1]
         self._strengths, self._times = map(lock_array, (strengths, times))
-        self.alpha = lock_array(alpha) if isinstance(alpha, np.ndarray) else alpha
+        self.alpha = read_only(np.asarray(alpha))
 
     def __getitem__(self, which: Any) -> Prony:
         """Return one of n materials for an index, or some for a slice or an array of indices; as a
@@ -266,7 +275,6 @@ class Prony(OneOrMany):
             count = np.count_nonzero(strengths)
             strengths = strengths[:count]
             times = times[:count]
-            alpha = float(alpha)
         return Prony._make(self.by_creep, strengths, times, alpha)
 
     def repeated(self, count: int) -> Prony:
@@ -287,11 +295,7 @@ class Prony(OneOrMany):
         >>> vr.Prony([2.0], [1.0]).repeated(3).alpha
         array([3., 3., 3.])
         """
-        strengths, times = (
-            np.broadcast_to(values, (count, values.size))
-            for values in (self._strengths, self._times)
-        )
-        return Prony._make(self.by_creep, strengths, times, np.full(count, self.alpha))
+        return self.slower(np.ones(count))
 
     @property
     def _convert(self) -> Any:
@@ -360,8 +364,8 @@ class Prony(OneOrMany):
             strengths, rates = (getattr(self.modes, name) for name in names)
         else:
             # a material with fewer modes than others keeps strength 0 and rate 1 behind its own
-            strengths = np.zeros(self._strengths.shape)
-            rates = np.ones(self._strengths.shape)
+            strengths = np.zeros_like(self._strengths)
+            rates = np.ones_like(strengths)
             for rows, modes, _ in self.blocks(np.arange(len(self))):
                 count = modes.a.shape[-1]
                 strengths[rows, :count], rates[rows, :count] = (
@@ -442,12 +446,10 @@ class Prony(OneOrMany):
         """
         factors = check_array("factor", factor, above=0.0)
         broadcast_shape(factor=factors, materials=self)
-        times = self._times * factors[..., np.newaxis]
+        times = self._times * factors[..., None]
         if self.by_creep:
             # with alpha, which 1 - sum J would give with fewer digits
-            return Prony.creep(
-                self._strengths, times, alpha=np.broadcast_to(self.alpha, times.shape[:-1])
-            )
+            return Prony.creep(self._strengths, times, alpha=self.alpha)
         return Prony(self._strengths, times)
 
     def in_own_time(self) -> tuple[Prony, float]:
@@ -479,12 +481,6 @@ class Prony(OneOrMany):
         unit = 2.0 ** round(math.log2(self.slow_time))  # 1 without modes
         return (self, 1.0) if unit == 1.0 else (self.slower(1.0 / unit), unit)
 
-    @cached_property
-    def _key(self) -> tuple[Any, ...]:
-        """Values that determine the series: the form in which it was given, modes and alpha."""
-        given = self._strengths, self._times, np.asarray(self.alpha)
-        return self.by_creep, given[0].shape, *(each.tobytes() for each in given)
-
     def __repr__(self) -> str:
         """Return the call that makes the series, with numbers to the bit; of many materials their
         number and form.
@@ -499,15 +495,12 @@ class Prony(OneOrMany):
         return f"Prony(E={strengths}, tau={times})"
 
 
-def _check_modes(
-    names: tuple[str, str], strengths: ArrayLike, times: ArrayLike
-) -> tuple[NDArray, NDArray]:
+def _check_modes(**given: ArrayLike) -> tuple[NDArray, NDArray]:
     """Check modes, sort them, and add those of equal times.
 
-    names: names of strengths and times, for errors.
-    strengths, times: strengths, >= 0, and times, > 0, of the modes, (modes,) or (n, modes), or one
-        of them a number; dimensionless, times in units of T_ref.  No modes, and no materials, are
-        allowed; not changed.
+    given: by the names that errors state first the strengths, >= 0, then the times, > 0, of the
+        modes, (modes,) or (n, modes), or one of them a number; dimensionless, times in units of
+        T_ref.  No modes, and no materials, are allowed; not changed.
     Returns (strengths, times) by descending time, (modes,) or (n, modes) with as many modes as the
     material with most has; modes without strength are dropped or, of many materials, put after the
     others, where the times have no meaning.  Modes of equal times are one, with the sum of their
@@ -515,29 +508,35 @@ def _check_modes(
     Raises ParameterError for numbers out of range, shapes that do not fit, more than
     :data:`MOST_MODES` modes, and times that span more than :data:`LARGEST_TIME_RATIO`.
     """
-    values = check_array(names[0], strengths, low=0.0)
-    each = check_array(names[1], times, above=0.0)
+    (of_strengths, strengths), (of_times, times) = given.items()
+    values = check_array(of_strengths, strengths, low=0.0)
     values = np.minimum(values, 1e300)  # sums stay finite, and are refused
-    check_array(names[1], each, low=1.0 / LONGEST_TIME, high=LONGEST_TIME)
+    each = check_array(of_times, times, low=1.0 / LONGEST_TIME, high=LONGEST_TIME)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
-        allowed = f"one time for each {names[0]}, which has shape {values.shape}"
-        raise shape_error(names[1], each.shape, allowed)
-    shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
+        allowed = f"one time for each {of_strengths}, which has shape {values.shape}"
+        raise shape_error(of_times, each.shape, allowed)
+    shape = broadcast_shape(**{of_strengths: values, of_times: each})
     if len(shape) not in (1, 2):
-        allowed = "lists, as [2.0] and [0.1], or arrays (materials, terms of the series)"
-        raise described_error(" and ".join(names), f"have shape {shape}", allowed)
+        raise described_error(
+            f"{of_strengths} and {of_times}",
+            f"have shape {shape}",
+            "lists, as [2.0] and [0.1], or arrays (materials, terms of the series)",
+        )
     values, each = sort_modes(*np.broadcast_arrays(values, each))
     present = values > 0.0
     most = int(present.sum(axis=-1).max(initial=0))
     if most > MOST_MODES:
-        found = f"has {most} different times (two bodies, or shear and bulk, count together)"
-        raise described_error(names[1], found, f"a list of at most {MOST_MODES}")
+        raise described_error(
+            of_times,
+            f"has {most} different times (two bodies, or shear and bulk, count together)",
+            f"a list of at most {MOST_MODES}",
+        )
     longest = each.max(axis=-1, initial=0.0, where=present)
     shortest = each.min(axis=-1, initial=np.inf, where=present)
     wide = longest > LARGEST_TIME_RATIO * shortest
     if wide.any():
         raise described_error(
-            names[1],
+            of_times,
             f"ranges from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}",
             f"times within a factor of {LARGEST_TIME_RATIO:g}",
         )
@@ -561,9 +560,7 @@ def series_of_alpha(alpha: float) -> Prony:
     one = np.ones(c.shape)
     series = Prony._make(True, c, one, alpha)
     # takes the place of the cached property, which would convert the series
-    series.modes = Modes(
-        alpha=alpha, a=alpha * one, b=1.0 * one, E=alpha * c, J=c, gap=(alpha * c)[:, np.newaxis]
-    )
+    series.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, None])
     return series
 
 
@@ -583,7 +580,7 @@ def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floa
     for n in range(each.shape[-1] - 1):
         # of equal times each passes its strength on to the next, so that the last one has the sum
         equal = each[..., n] == each[..., n + 1]
-        for given in (values, *rest) if equal.any() else ():
+        for given in (values, *rest):
             given[..., n + 1] += np.where(equal, given[..., n], 0.0)
             given[..., n] *= ~equal
     order = np.argsort(values == 0.0, axis=-1, kind="stable")

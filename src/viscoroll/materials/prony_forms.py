@@ -8,8 +8,7 @@ they alternate: b_1 < a_1 < b_2 < ... < a_N.  The unknown is the distance of a z
 pole, so that the gaps a_i - b_j keep all digits; the strengths are products of gaps.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,8 +35,7 @@ _NEWTON_STEPS = 3
 _CLOSEST = 1e-300
 
 
-@dataclass(frozen=True)
-class Modes:
+class Modes(NamedTuple):
     """Relaxation and creep form of one material, or of many along leading axes, and the gaps
     between their rates.
 
@@ -70,19 +68,15 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     whose rates are in the inverse unit of ``tau``; E and alpha are the arguments themselves.
     """
     a = 1.0 / tau
-    modes = tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
-    spread = np.zeros((*tau.shape[:-1], modes + 1, modes + 1))
+    poles = np.insert(a, 0, 0.0, axis=-1)
+    spread = poles[..., :, None] - poles[..., None, :]
     spread[..., 1:, 1:] = _rate_differences(tau)
-    spread[..., 1:, 0] = a
-    spread[..., 0, 1:] = -a
-    gaps = zeros_from_poles(
-        spread, np.concatenate([np.ones((*E.shape[:-1], 1)), E], axis=-1), np.zeros(())
-    )
+    gaps = zeros_from_poles(spread, np.insert(E, 0, 1.0, axis=-1), np.zeros(()))
     # zero j less pole: of the pole at 0 that is b_j, of the others b_j - a_i, at [i, j]
     b = gaps[..., 0, :].copy()
     gap = np.ascontiguousarray(np.swapaxes(-gaps[..., 1:, :], -1, -2))
-    return Modes(alpha=alpha, a=a, b=b, E=E, J=_strengths(gap, alpha)[0] / b, gap=gap)
+    return Modes(alpha, a, b, E, _strengths(gap, alpha, -1) / b, gap)
 
 
 def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
@@ -98,7 +92,7 @@ def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
     a = b + np.diagonal(gap, axis1=-2, axis2=-1)
-    return Modes(alpha=alpha, a=a, b=b, E=_strengths(gap, alpha)[1] / a, J=J, gap=gap)
+    return Modes(alpha, a, b, _strengths(gap, alpha, -2) / a, J, gap)
 
 
 def _rate_differences(times: NDArray) -> Floats:
@@ -137,14 +131,12 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
     poles = weight.shape[-1]
     constant = constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
-    if (
-        poles and (constant > 0.0).all()
-    ):  # right of all poles every term is at least -weight over the distance
+    if poles and (constant > 0.0).all():
+        # right of all poles every term is at least -weight over the distance
         half = np.concatenate([half, 2.0 * weight.sum(axis=-1, keepdims=True) / constant], axis=-1)
     left = np.broadcast_to(np.arange(half.shape[-1]), half.shape)
-    in_left = np.ones(half.shape, dtype=bool)
     middle = _sum_near(half, _relative_poles(left, spread), weight, constant)
-    in_left[..., : poles - 1] = middle[..., : poles - 1] >= 0.0
+    in_left = (middle >= 0.0) | (left == poles - 1)
     origin = np.where(in_left, left, left + 1)
     side = np.where(in_left, 1.0, -1.0)
     seen = _relative_poles(origin, spread)
@@ -158,9 +150,7 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
         high = np.where(beyond, mid, high)
     distance = np.exp(0.5 * (low + high))
     for _ in range(_NEWTON_STEPS):
-        distance = _improve_distance(
-            distance, origin, side=side, seen=seen, weight=weight, constant=constant
-        )
+        distance = _improve_distance(distance, origin, side, seen, weight, constant)
     return np.swapaxes((side * distance)[..., None] - seen, -1, -2)
 
 
@@ -217,20 +207,19 @@ def _improve_distance(
     own = np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)
     # with the poles along the first axis numpy adds in their order: results keep their last bits
-    sums = (
+    rest, slope = (
         np.ascontiguousarray(np.moveaxis(values, -1, 0)).sum(axis=0)
         for values in (terms, terms * inverse)
     )
-    rest, slope = sums
     rest = constant + rest
     value = np.take_along_axis(weight, origin, axis=-1) - distance * side * rest
     new = distance + value / (side * rest + distance * slope)
     return np.where((new > 0.5 * distance) & (new < 2.0 * distance), new, distance)
 
 
-def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
-    """Return the strengths of both forms of a series, each times its rate, from the gaps between
-    the rates of the two forms.
+def _strengths(gap: NDArray, alpha: Any, axis: int) -> Floats:
+    """Return the strengths of one form of a series, each times its rate, from the gaps between the
+    rates of the two forms.
 
     With p the variable of Laplace's transform, the modulus divided by that of long times is
 
@@ -247,21 +236,19 @@ def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
     gap: a_i - b_j, rates of relaxation minus rates of creep, in any unit, (..., modes, modes),
     [..., j, i].
     alpha: instantaneous divided by long-time modulus, a number or (...).
-    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, in the unit of
-    the gaps, (..., modes) each, > 0.
+    axis: -1 for the strengths of creep, -2 for those of relaxation: axis of the gaps along which
+        the factors are multiplied.
+    Returns J b or E a, in the unit of the gaps, (..., modes), > 0.
     """
     size = np.abs(gap)
     own = np.eye(gap.shape[-1], dtype=bool)
     nearest = np.diagonal(size, 0, -2, -1)
     alpha = np.asarray(alpha)[..., None]
     # b_j - b_l = (a_l - b_l) + (b_j - a_l) and a_i - a_l = (a_i - b_i) + (b_i - a_l), j, i > l
-    sums = nearest[..., None, :] + size, nearest[..., :, None] + size
-    apart = (
-        np.where(own, 1.0, low + np.swapaxes(low, -1, -2))
-        for low in (np.tril(each, -1) for each in sums)
-    )
-    per_b, per_a = (np.where(own, 1.0, size / each) for each in apart)
-    return nearest / alpha * per_b.prod(axis=-1), nearest * alpha * per_a.prod(axis=-2)
+    low = np.tril(np.expand_dims(nearest, -3 - axis) + size, -1)
+    apart = np.where(own, 1.0, low + np.swapaxes(low, -1, -2))
+    product = np.where(own, 1.0, size / apart).prod(axis=axis)
+    return (nearest / alpha if axis == -1 else nearest * alpha) * product
 
 
 def lock_array(values: Any) -> Any:
