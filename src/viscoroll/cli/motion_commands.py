@@ -19,8 +19,8 @@ import viscoroll as vr
 from .arguments import (
     FIGURES,
     SCENE,
-    TABLE,
     Option,
+    add_table,
     as_text,
     command,
     deliver,
@@ -60,7 +60,7 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
     )
 
 
-@command("contact", *_speeds(numbers), TABLE)
+@command("contact", *_speeds(numbers), add_table)
 def contact(arguments: Namespace) -> None:
     """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
 
@@ -89,19 +89,14 @@ def contact(arguments: Namespace) -> None:
     """  # noqa: E501
     import numpy as np
 
-    V = arguments.V
-    creep = arguments.omega if arguments.delta is None else arguments.delta
+    speeds = {name: getattr(arguments, name) for name in ("V", "delta", "omega")}
     # all pairs, speeds along the first axis, so that the states of the first speed come first
-    V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
-    show(
-        arguments,
-        roller_of_argument(arguments.scene).contact(
-            V, delta=arguments.delta, omega=arguments.omega
-        ),
-    )
+    if np.ndim(arguments.V) and (np.ndim(arguments.delta) or np.ndim(arguments.omega)):
+        speeds["V"] = arguments.V[:, np.newaxis]
+    show(arguments, roller_of_argument(arguments.scene).contact(**speeds))
 
 
-@command("stress", *_speeds(float), TABLE)
+@command("stress", *_speeds(float), add_table)
 def stress(arguments: Namespace) -> None:
     """Compute pressure and shear stress along the contact.
 
@@ -147,7 +142,7 @@ def stress(arguments: Namespace) -> None:
         required=True,
         help="output times, written as the numbers of `viscoroll contact`",
     ),
-    TABLE,
+    add_table,
 )
 def roll(arguments: Namespace) -> None:
     """Integrate one free motion from given initial speeds.
@@ -198,9 +193,8 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
     }
 
 
-@command(
-    "steady",
-    SCENE,
+#: Loads, options of commands on steady rolling.
+_LOADS = (
     option("--force", type=numbers, help="force on the axis along V (default: 0)"),
     option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
     option(
@@ -208,12 +202,19 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
         type=numbers,
         help="slope angle in rad, positive if +V points downhill; the normal load is P cos(slope)",
     ),
+)
+
+
+@command(
+    "steady",
+    SCENE,
+    *_LOADS,
     option(
         "--V",
         type=numbers,
         help="prescribed speed; it takes the place of --force or --torque, which is then computed",
     ),
-    TABLE,
+    add_table,
 )
 def steady(arguments: Namespace) -> None:
     """Find the steady speeds under force, torque or slope.
@@ -244,14 +245,12 @@ def steady(arguments: Namespace) -> None:
         loads["force"] = [0.0]
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
-    if len(lines) > _MOST_LINES:
-        further = len(lines) - _MOST_LINES
+    if (further := len(lines) - _MOST_LINES) > 0:
         lines[_MOST_LINES:] = [
             f"no steady speed for {further} more of the loads, of which the first is load 0"
         ]
-    if (
-        arguments.output is not None or arguments.format != "text"
-    ):  # a table for programs has no heading
+    # a table for programs has no heading
+    if arguments.output is not None or arguments.format != "text":
         for line in lines:
             warnings.warn(line, vr.ModelWarning, stacklevel=2)
     show(arguments, equilibria, "\n".join(lines))
@@ -268,10 +267,8 @@ def steady(arguments: Namespace) -> None:
         help="temperature of the surroundings in degrees Celsius",
     ),
     option("--conductance", type=numbers, required=True, help="heat given off per kelvin, W/(m K)"),
-    option("--force", type=numbers, help="force on the axis along V, N/m"),
-    option("--torque", type=numbers, help="torque on the cylinder along omega, N m/m"),
-    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill"),
-    TABLE,
+    *_LOADS,
+    add_table,
 )
 def heat(arguments: Namespace) -> None:
     """Find the temperatures at which a cylinder runs.
@@ -429,7 +426,7 @@ def verify(arguments: Namespace) -> int:
         help="base points, rounded up to a power of two (default: 4096); a base point "
         "takes a motion for every uncertain input and two more",
     ),
-    TABLE,
+    add_table,
 )
 def sensitivity(arguments: Namespace) -> None:
     """Compute Sobol indices of the uncertain inputs of a run file.
@@ -461,26 +458,23 @@ def sensitivity(arguments: Namespace) -> None:
     """  # noqa: E501
     from ..runs.sensitivity import sobol_indices, table
 
-    indices = sobol_indices(
-        vr.runs.read_run(arguments.run_file), arguments.n, progress=sys.stderr.isatty()
-    )
+    run = vr.runs.read_run(arguments.run_file)
+    indices = sobol_indices(run, arguments.n, progress=sys.stderr.isatty())
     frame = table(indices)
     about = indices.attrs
-    n = about["asked_base_points"]
     base = about["base_points"]
-    rounded = "" if base == n else f" ({n}, rounded up to a power of two)"
-    heading = "\n".join(
-        (
-            f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed "
-            f"{about['seed']}",
-            *(
-                f"{about[key]} motions: {key.removeprefix('ended: ')}"
-                for key in about
-                if key.startswith("ended: ")
-            ),
-            *(f"no indices for {reason}" for reason in about["refused"].splitlines()),
-        )
-    )
+    rounded = f" ({arguments.n}, rounded up to a power of two)" * (base != arguments.n)
+    lines = [
+        f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, "
+        f"seed {about['seed']}"
+    ]
+    lines += [
+        f"{count} motions: {key.removeprefix('ended: ')}"
+        for key, count in about.items()
+        if key.startswith("ended: ")
+    ]
+    lines += [f"no indices for {reason}" for reason in about["refused"].splitlines()]
+    heading = "\n".join(lines)
     deliver(arguments, indices, frame, heading)
     if arguments.output is not None:
         print(as_text(frame, heading), end="")
@@ -523,13 +517,9 @@ def plot(arguments: Namespace) -> None:
     }
     path = arguments.what
     if (draw := kinds.get(Path(path).suffix.lower())) is None:
-        raise vr.ParameterError(
-            "plot",
-            path,
-            "a file to plot",
-            f"{path!r} is not a file that can be plotted: give FILE.nc, SCENE.toml, "
-            "MATERIAL.toml or STORE.zarr",
-        )
+        allowed = "FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
+        sentence = f"{path!r} is not a file that can be plotted: give {allowed}"
+        raise vr.ParameterError("plot", path, allowed, sentence)
     save(draw(path), arguments.output)
 
 

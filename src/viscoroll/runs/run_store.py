@@ -12,7 +12,7 @@ A block is a range of the motions of a run: :func:`block_inputs` draws its rando
 :func:`roll_block` makes the motions.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,21 +23,24 @@ import numpy as np
 
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
-from ..core import FileError, Floats, NDArray, as_file_error, shape_error, write_bytes
+from ..core import FileError, Named, NDArray, as_file_error, shape_error, write_bytes
 from ..motion import Ensemble, Summary, merge_summaries, summarise, summary_dataset
 from ..motion.ensemble import ensemble
 from ..sampling import points
-from . import run_records
 from .run_records import (
     ADVICE,
     RECORDS,
+    Files,
     Record,
     about,
     attributes,
-    damaged,
+    consolidated,
+    dataset_files,
+    digest_of,
     encoded,
     identity,
     make_folder,
+    motion_files,
     read_record,
     refuse_another,
     refuse_unreadable,
@@ -45,6 +48,7 @@ from .run_records import (
 )
 from .run_rollers import drive_of, measured_bands, roller_of
 from .runfile import START, Run
+from .uncertain_inputs import Columns
 
 # --- One block of a run, a range of its motions ---
 
@@ -53,7 +57,7 @@ from .runfile import START, Run
 _STARTS = 1000
 
 
-def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
+def block_inputs(run: Run, block: int, most: int | None = None) -> Columns:
     """Draw the inputs of the motions of a block: the same run, block and ``most`` give the same
     bits, whatever blocks were drawn before.
 
@@ -69,25 +73,14 @@ def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Flo
     refuses.
     """
     start, stop = run.edges(block)
+    if most is not None:
+        stop = min(stop, start + most)
     settings = run.settings
-    dimensions = len(run.inputs.dimensions)
-    stop = stop if most is None else min(stop, start + most)
-    return run.inputs.values(
-        points(
-            settings.design,
-            settings.seed,
-            n=settings.n,
-            dimensions=dimensions,
-            start=start,
-            stop=stop,
-            block=block,
-        )
-    )
+    of_all = settings.design, settings.seed, settings.n, len(run.inputs.dimensions)
+    return run.inputs.values(points(*of_all, start, stop, block))
 
 
-def roll_inputs(
-    run: Run, values: Mapping[str, Any], count: int = 1, threads: int | None = 1
-) -> Ensemble:
+def roll_inputs(run: Run, values: Named, count: int = 1, threads: int | None = 1) -> Ensemble:
     """Roll motions of a run from given inputs, in the units of its file.
 
     Parameters
@@ -156,7 +149,7 @@ def roll_inputs(
     )
 
 
-def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
+def roll_block(run: Run, block: int) -> tuple[Columns, Ensemble]:
     """Draw the inputs of a block, and compute its motions, on one thread, as several blocks are
     rolled at a time.
 
@@ -213,7 +206,7 @@ def _fraction_outside(run: Run) -> float:
     run: :class:`runs.Run` in SI units that gives V0; its first motions, at most 1000 of the first
     block, are examined.
     Returns the fraction of these motions that are outside the band of at least one material, a
-    float in [0, 1]; 0.0 without bands.
+    float in [0, 1].
     Raises ParameterError for inputs of these motions that a cylinder does not allow, FileError for
     a material.
     """
@@ -224,9 +217,8 @@ def _fraction_outside(run: Run) -> float:
     # lam l0 with l0 = R/kappa is the contact length
     lam = contact(scene, V0 / roller.scale["V"], delta=0.0, fields="lam").lam
     frequency = transit_frequency(V0, lam * roller.R / scene.kappa)
-    outside: Any = False
-    for low, high in measured_bands(run.path, content).values():
-        outside = outside | (frequency < low) | (frequency > high)
+    bands = measured_bands(run.path, content).values()
+    outside = np.any([(frequency < low) | (frequency > high) for low, high in bands], axis=0)
     return float(np.mean(outside & (V0 > 0.0)))
 
 
@@ -255,13 +247,12 @@ class Store:
     run: Run
 
     def start(self) -> None:
-        """Create the folder and write the metadata of all motions; a store of this run stays as it
-        is.
+        """Write the metadata of all motions; a store of this run stays as it is.
 
-        The store of the same run with fewer motions is extended: its metadata are written anew, its
-        summaries are removed.  Temporary files of killed processes are removed.  Metadata are those
-        of :func:`metadata`, none if motions are not kept; the record "start" is written in any
-        case.
+        The folder of the records must exist (:func:`locked`).  The store of the same run with fewer
+        motions is extended: its metadata are written anew, its summaries are removed.  Temporary
+        files of killed processes are removed.  Metadata are those of :func:`metadata`, none if
+        motions are not kept; the record "start" is written in any case.
 
         Raises
         ------
@@ -272,12 +263,11 @@ class Store:
             without zarr.
         """
         self.refuse_other()
-        make_folder(self.root / RECORDS)
         self._remove_temporary_files()
         self._remove_old_end()
         self._write_part("start", metadata(self.run), about=about(self.run))
 
-    def _write_part(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
+    def _write_part(self, name: str | int, files: Files, **more: Any) -> None:
         """Write the files of a part, then its record, which makes the part complete.
 
         name: "start", "end" or the number of a block, from 0.
@@ -384,8 +374,8 @@ class Store:
         dataset = summary_dataset(
             merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
         )
-        files = run_records.dataset_files(dataset.assign_attrs(about(self.run)))
-        files[".zmetadata"] = run_records.consolidated(files | metadata(self.run))
+        files = dataset_files(dataset.assign_attrs(about(self.run)))
+        files[".zmetadata"] = consolidated(files | metadata(self.run))
         self._write_part("end", files)
         self._remove_temporary_files()
 
@@ -404,14 +394,12 @@ class Store:
         for block in range(self.run.blocks):
             record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
-                raise FileError(
-                    self.root,
-                    f"block {block} was damaged during the run: the same command repairs it",
-                )
+                problem = f"block {block} was damaged during the run"
+                raise FileError(self.root, f"{problem}: the same command repairs it")
             yield record.summary
 
 
-def block_content(run: Run, block: int) -> tuple[dict[str, bytes], Summary]:
+def block_content(run: Run, block: int) -> tuple[Files, Summary]:
     """Roll the motions of a block, and make the files and the summary that the store keeps of it;
     nothing is written.
 
@@ -426,12 +414,13 @@ def block_content(run: Run, block: int) -> tuple[dict[str, bytes], Summary]:
     installed.
     """
     values, motions = roll_block(run, block)
-    keeps = run.settings.keep == "all"
-    files = _motion_files(run, columns_of(run, values, motions), block) if keeps else {}
+    files = {}
+    if run.settings.keep == "all":
+        files = _motion_files(run, columns_of(run, values, motions), block)
     return files, summarise(motions, run.settings.summaries)
 
 
-def metadata(run: Run) -> dict[str, bytes]:
+def metadata(run: Run) -> Files:
     """Return the metadata of the group of all motions: path below the store -> content; {} if
     motions are not kept.
 
@@ -448,9 +437,7 @@ def metadata(run: Run) -> dict[str, bytes]:
     return _motion_files(run, columns_of(run, values, roll_inputs(run, values)))
 
 
-def _motion_files(
-    run: Run, columns: dict[str, NDArray], block: int | None = None
-) -> dict[str, bytes]:
+def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> Files:
     """Return files of the group of all motions: the chunks of a block, or the metadata.
 
     It makes the dataset, with attributes and times, that :func:`.run_records.motion_files` encodes.
@@ -470,11 +457,11 @@ def _motion_files(
         for name, values in columns.items()
     }
     motions = xr.Dataset(variables, {"t": ("t", run.t, attributes("t", run.si))}, about(run))
-    files = run_records.motion_files(motions, run.settings.n, run.block, block)
+    files = motion_files(motions, run.settings.n, run.block, block)
     return {f"{MOTIONS}/{name}": content for name, content in files.items()}
 
 
-def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
+def columns_of(run: Run, values: Named, motions: Ensemble) -> dict[str, NDArray]:
     """Return the columns that are kept of motions: inputs, fields and how they ended.
 
     run: :class:`runs.Run`, whose settings name the fields.
@@ -502,14 +489,14 @@ def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
     run, motions: identity of the run (:func:`.run_records.identity`) and number of motions of the
         part that the record must state.
     Returns [] if the part is complete; the path of the record alone if that is missing, damaged, of
-    another run or of another number of motions; else the paths of files that are missing or
-    damaged.
+    another run or of another number of motions; else the paths of files that are missing, cannot be
+    read, or differ from their digest.
     """
     path = _record_path(root, name)
     record = read_record(path)
     if record is None or (record.run, record.motions) != (run, motions):
         return [str(path.relative_to(root))]
-    return damaged(root, record)
+    return [file for file, digest in record.files.items() if digest_of(root / file) != digest]
 
 
 def _record_path(root: Path, name: str | int) -> Path:
@@ -537,10 +524,8 @@ def locked(root: Path) -> Iterator[None]:
     except Timeout:
         raise FileError(root, "another process writes here: wait until that process ends") from None
     except (OSError, NotImplementedError) as error:  # some network disks
-        raise FileError(
-            root,
-            f"cannot be locked ({getattr(error, 'strerror', None) or error}): use a local disk",
-        ) from error
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(root, f"cannot be locked ({reason}): use a local disk") from error
     try:
         yield
     finally:
