@@ -92,7 +92,7 @@ def contact(arguments: Namespace) -> None:
     speeds = {name: getattr(arguments, name) for name in ("V", "delta", "omega")}
     # all pairs, speeds along the first axis, so that the states of the first speed come first
     if np.ndim(arguments.V) and (np.ndim(arguments.delta) or np.ndim(arguments.omega)):
-        speeds["V"] = arguments.V[:, np.newaxis]
+        speeds["V"] = arguments.V[:, None]
     show(arguments, roller_of_argument(arguments.scene).contact(**speeds))
 
 

@@ -14,8 +14,8 @@ import math
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Sequence
-from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from collections.abc import Callable, Collection, Sequence
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -558,34 +558,17 @@ def run_blocks(
         from tqdm import tqdm
 
         edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
+    waiting: deque[Future[None]] = deque()
     # with a bar and no blocks the pool still needs one worker
     with ThreadPoolExecutor(max(workers, 1)) as pool:
-        _submit_all(pool, work, edges, _BLOCKS_IN_QUEUE * workers)
-
-
-def _submit_all(
-    pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int
-) -> None:
-    """Run all blocks on a pool, await them in order, and return when all are done.
-
-    If a block fails, its exception is raised when it is awaited; of several that of the first
-    block.  Then no further blocks are submitted, those that have not begun are cancelled, and those
-    that run are not awaited.
-
-    pool: :class:`concurrent.futures.Executor`, of threads.
-    work: function (start, stop) -> None.
-    edges: (start, stop) of each block, an iterable that is consumed as blocks are submitted.
-    most: largest number of blocks that are submitted and not yet awaited, >= 1; it bounds the
-    memory of the futures.
-    """
-    waiting: deque[Future[None]] = deque()
-    try:
-        for edge in edges:
-            waiting.append(pool.submit(work, *edge))
-            if len(waiting) > most:
+        try:
+            for edge in edges:
+                waiting.append(pool.submit(work, *edge))
+                if len(waiting) > _BLOCKS_IN_QUEUE * workers:
+                    waiting.popleft().result()
+            while waiting:
                 waiting.popleft().result()
-        while waiting:
-            waiting.popleft().result()
-    finally:
-        for future in waiting:
-            future.cancel()
+        finally:
+            # after an exception blocks that have not begun are cancelled
+            for future in waiting:
+                future.cancel()

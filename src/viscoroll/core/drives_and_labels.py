@@ -326,7 +326,7 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     if isinstance(value, Schedule):
         values = check_array(f"values of {name}", value.values, low=low)
         # the last axis of the values is that of the corners, and cylinders are the rows
-        units = unit[:, np.newaxis] if np.ndim(unit) else unit
+        units = unit[:, None] if np.ndim(unit) else unit
         return Schedule(value.times / scale["t"], divide_by_unit(name, values, units))
     quotient = divide_by_unit(name, check_array(name, value, unit=scale, low=low), unit)
     return quotient if quotient.ndim else float(quotient)

@@ -26,11 +26,10 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
-import msgspec
 import numpy as np
 
 from ..core import (
@@ -433,7 +432,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     workers = min(thread_count(threads), run.blocks)
     warn_of_materials(run)
     trial = min(run.block, _TRIAL[run.method])
-    short = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
+    short = run._with_settings(block=trial)
     block_content(short, 0)
     law_seconds = _time_of_laws(short)
     start = time.perf_counter()

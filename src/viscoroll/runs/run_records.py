@@ -17,7 +17,6 @@ import hashlib
 import json
 import os
 import zlib
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -332,7 +331,7 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
         problem = f"was written with other versions, {versions}: finish it with these"
         raise FileError(root, f"{problem}, or {ADVICE}")
     # this run with the number of motions of the store: has it the identity of the store?
-    before = replace(run, settings=msgspec.structs.replace(run.settings, n=max(record.motions, 1)))
+    before = run._with_settings(n=max(record.motions, 1))
     if of_a_block or record.run != identity(before):
         raise FileError(root, f"contains the results of another run file: {ADVICE}")
     if problem := _no_extension(before, run):

@@ -14,11 +14,10 @@ A block is a range of the motions of a run: :func:`block_inputs` draws its rando
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
@@ -189,10 +188,7 @@ def warn_of_materials(run: Run) -> None:
         bands = measured_bands(run.path, content)
         if not (bands and warn_of_unmeasured_starts(_fraction_outside(run), bands)):
             warn_of_contact(roller_of(run.path, content), run.inputs.largest("V0"))
-    settings = msgspec.structs.replace(
-        run.settings, summaries=("V",), keep="summaries", method="integrate"
-    )
-    roll_inputs(replace(run, settings=settings), medians)
+    roll_inputs(run._with_settings(summaries=("V",), keep="summaries", method="integrate"), medians)
 
 
 def _fraction_outside(run: Run) -> float:

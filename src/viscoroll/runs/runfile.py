@@ -22,7 +22,7 @@ import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import msgspec
 import numpy as np
@@ -239,6 +239,13 @@ class Run:
     def blocks(self) -> int:
         """Number of blocks."""
         return -(-self.settings.n // self.block)
+
+    def _with_settings(self, **changes: Any) -> Self:
+        """Return a new run with other values of some settings.
+
+        changes: name of a setting of :class:`RunSection` -> its value, which is not checked.
+        """
+        return replace(self, settings=msgspec.structs.replace(self.settings, **changes))
 
     def edges(self, block: int) -> tuple[int, int]:
         """Return the range of the motions of a block, counted over the run.

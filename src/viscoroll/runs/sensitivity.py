@@ -6,9 +6,6 @@ scrambled Sobol sequence; scipy.stats.sobol_indices, which has them too, fails f
 (SciPy 1.17).  The cost of a base point is one motion for every uncertain input and two more.
 """
 
-from dataclasses import replace
-
-import msgspec
 import numpy as np
 
 from ..core import (
@@ -31,7 +28,7 @@ from ..motion import QUANTITIES, column_attributes, provenance
 from ..sampling import points
 from .run_store import roll_inputs, warn_of_materials
 from .runfile import Run
-from .uncertain_inputs import Inputs, inputs_in
+from .uncertain_inputs import Columns, Inputs, inputs_in
 
 #: Level of the confidence intervals.
 CONFIDENCE = 0.95
@@ -120,13 +117,9 @@ def sobol_indices(
     progress = check_bool("progress", progress)
     # Sobol's sequence is even over powers of two only
     base = 1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
-    settings = msgspec.structs.replace(
-        run.settings,
-        n=base * (len(names) + 2),
-        keep="summaries",
-        summaries=tuple(dict.fromkeys(run.settings.summaries)),
-    )
-    run = replace(run, settings=settings)
+    summaries = tuple(dict.fromkeys(run.settings.summaries))
+    run = run._with_settings(n=base * (len(names) + 2), keep="summaries", summaries=summaries)
+    settings = run.settings
     warn_of_materials(run)
     cube = _points(len(names), base, settings.seed)
     outcomes, status = _outcomes(run, cube, threads, progress)
@@ -215,13 +208,13 @@ def _points(count: int, base: int, seed: int) -> Floats:
     """
     # halves of the coordinates of one sequence, so that A and B are even together
     A, B = np.split(points("sobol", seed, base, 2 * count, start=0, stop=base, block=0), 2)
-    mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
+    mixed = [np.where(np.arange(count)[:, None] == n, B, A) for n in range(count)]
     return np.hstack([A, B, *mixed])
 
 
 def _outcomes(
     run: Run, cube: Floats, threads: int | None, progress: bool
-) -> tuple[dict[str, Floats], NDArray[np.int8]]:
+) -> tuple[Columns, NDArray[np.int8]]:
     """Roll all motions at points of the unit cube, block by block.
 
     run: :class:`runs.Run`, whose ``settings.summaries`` name the quantities, each once; inputs, t

@@ -165,7 +165,7 @@ class Inputs:
 
             normal = [ndtri(rows[name]) for name in self.correlated]
             # a sum in a fixed order, so that bits do not depend on the number of points
-            mixed = sum(part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal))
+            mixed = sum(part[:, None] * row for part, row in zip(self.mixing.T, normal))
             # 0 or 1, which ndtr may round to, would be infinite quantiles
             rows |= zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST))
         values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
