@@ -330,20 +330,15 @@ def _low_high(text: str) -> tuple[float, ...]:
 
 
 def _export(table: Any, path: Path) -> None:
-    """Write a law or a grid in the format of the suffix of a path, and print the size of the file.
-
-    table: dataset of a law or a grid.
-    path: path of the file.
+    """Write a law or a grid, a dataset ``table``, in the format of the suffix of a ``path``, and
+    print the size of the file.
     """
     vr.tables.export(table, path)
     _print_size(path)
 
 
 def _print_size(path: Path) -> None:
-    """Print the name and the size of a written file, in kB of 1000 bytes, on standard output.
-
-    path: path of the file.
-    """
+    """Print the name and the size of the written file at ``path``, in kB of 1000 bytes."""
     print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 
 

@@ -186,9 +186,11 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
         words = _range_words(*bounds)
         allowed = f"a number, {words}" if words else "a finite number"
         raise ParameterError(name, describe_value(value), allowed)
+    if array.dtype.itemsize <= 8:
+        return array.astype(np.float64, copy=False)
     # long doubles beyond the doubles become infinite, which is refused
     with np.errstate(over="ignore"):
-        return array.astype(np.float64, copy=False)
+        return array.astype(np.float64)
 
 
 def _first_wrong(array: Floats, wrong: Booleans) -> str:

@@ -230,12 +230,14 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
     except ValueError:  # compiled code may have no signature
         return
     except TypeError:
-        sentence = (
+        raise ParameterError(
+            name,
+            function,
+            "a function of t",
             f"{name} must be a function of t alone, but this function has the parameters "
             f"{parameters}: for feedback of the speeds give vr.Feedback; with another controller "
-            "call vr.law in an integrator of your own"
-        )
-        raise ParameterError(name, function, "a function of t", sentence) from None
+            "call vr.law in an integrator of your own",
+        ) from None
 
 
 def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:

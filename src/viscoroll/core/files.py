@@ -418,8 +418,9 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
         # without the indices of lists, which have no line of their own
         words = [key for key in keys if not key.isdecimal()]
         if missing := re.fullmatch("Object missing required field `(.*)`", problem):
-            section = ".".join((name, *words))
-            raise section_error(path, section, "", f"needs {missing[1]}") from error
+            raise section_error(
+                path, ".".join((name, *words)), "", f"needs {missing[1]}"
+            ) from error
         # every other fault is that of a key, since the section is a table
         text = repr(value)
         found = f"{words[-1]} = {text if len(text) <= 40 else f'{text:.37}...'}"
@@ -446,8 +447,8 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
     not have gives "".
     """
     for key in keys:
-        hints = map(get_type_hints, _sections_in(kind))
-        kind = next((each[key] for each in hints if key in each), None)
+        kinds = map(get_type_hints, _sections_in(kind))
+        kind = next((each[key] for each in kinds if key in each), None)
     return ", ".join(repr(each) for each in get_args(kind) if isinstance(each, str))
 
 
@@ -494,10 +495,8 @@ def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> No
     known = list(allowed)
     for key in content:
         if key not in known:
-            problem = (
-                f"unknown key {key!r}: must be one of {', '.join(known)}{suggestion(key, known)}"
-            )
-            raise section_error(path, name, key, problem)
+            words = f"{', '.join(known)}{suggestion(key, known)}"
+            raise section_error(path, name, key, f"unknown key {key!r}: must be one of {words}")
 
 
 @contextmanager

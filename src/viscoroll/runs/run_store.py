@@ -12,7 +12,7 @@ A block is a range of the motions of a run: :func:`block_inputs` draws its rando
 :func:`roll_block` makes the motions.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -79,7 +79,9 @@ def block_inputs(run: Run, block: int, most: int | None = None) -> Columns:
     return run.inputs.values(points(*of_all, start, stop, block))
 
 
-def roll_inputs(run: Run, values: Named, count: int = 1, threads: int | None = 1) -> Ensemble:
+def roll_inputs(
+    run: Run, values: Mapping[str, Any], count: int = 1, threads: int | None = 1
+) -> Ensemble:
     """Roll motions of a run from given inputs, in the units of its file.
 
     Parameters
@@ -324,15 +326,11 @@ class Store:
         records = map(
             read_record, (_record_path(root, "start"), _record_path(root, "end"), *blocks)
         )
-        record = next((record for record in records if record is not None), None)
-        if record is not None:
+        if record := next(filter(None, records), None):
             refuse_another(root, self.run, record)
-            return
-        others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
-        if others:
-            raise FileError(
-                root, f"is no results store, as it has {', '.join(others[:3])}: give another folder"
-            )
+        elif others := {path.name for path in root.iterdir()} - {RECORDS, MOTIONS}:
+            names = ", ".join(sorted(others)[:3])
+            raise FileError(root, f"is no results store, as it has {names}: give another folder")
 
     def missing(self) -> Iterator[int]:
         """Yield the numbers of the blocks that are missing or damaged, ascending.

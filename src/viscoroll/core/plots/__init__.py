@@ -93,12 +93,11 @@ def plot_measured_range(
     if band is None:
         return axes.plot(x, y, **line)[0]
     outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
-    solid = np.where(outside, np.nan, y)
     # The dashed curve begins at the last measured point: neighbours of points outside belong to it.
     dashed = outside.copy()
     dashed[1:] |= outside[:-1]
     dashed[:-1] |= outside[1:]
-    (drawn,) = axes.plot(x, solid, **line | {"linestyle": "-"})
+    (drawn,) = axes.plot(x, np.where(outside, np.nan, y), **line | {"linestyle": "-"})
     axes.plot(x, np.where(dashed, y, np.nan), **line | {"linestyle": "--", "label": None})
     return drawn
 
@@ -169,8 +168,7 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
         grey = _GREYS[min(n, 2)]
         axes.fill_between(t, values[n], values[-1 - n], color=grey, linewidth=0.0, label=text)
     if levels.size % 2:
-        label = f"{100 * levels[middle]:g} %"
-        axes.plot(t, values[middle], ".-", color="black", label=label)
+        axes.plot(t, values[middle], ".-", color="black", label=f"{100 * levels[middle]:g} %")
     zero_line(axes)
     if levels.size:
         low, high = axes.get_ylim()
@@ -354,8 +352,8 @@ def stresses(data: Dataset) -> Figure:
     for name, line in zip(names, LINES):
         axes.plot(data["x"].values, data[name].values, label=symbol_label(data[name]), **line)
     zero_line(axes)
-    labels = (variable_label(data[name]) for name in names)
-    axes.set(xlabel=variable_label(x), ylabel="\n".join(labels))
+    axes.set_xlabel(variable_label(x))
+    axes.set_ylabel("\n".join(variable_label(data[name]) for name in names))
     axes.legend(frameon=False)
     return figure
 
@@ -373,12 +371,12 @@ def equilibria(data: Dataset) -> Figure:
     differ by a factor of more than 100, their axis is logarithmic on both sides of a linear part
     between plus and minus the least magnitude.
     """
-    loads = (
-        name
-        for name in ("slope", "force", "torque")
-        if name in data and np.ptp(_finite(data[name])) > 0.0
-    )
-    load, shown = ("V", "temperature") if "temperature" in data else (next(loads, "force"), "V")
+    load, shown = "force", "V"
+    for name in ("torque", "force", "slope"):  # the last one that varies is shown
+        if name in data and np.ptp(_finite(data[name])) > 0.0:
+            load = name
+    if "temperature" in data:
+        load, shown = "V", "temperature"
     figure, axes = new_figure("Steady rolling: stable (filled) and unstable (open)")
     x, y, stable = (
         data[name].broadcast_like(data["V"]).values.ravel() for name in (load, shown, "stable")
@@ -557,6 +555,10 @@ def draw(data: Dataset) -> Figure:
         if applies:
             return figure(data)
     found = ", ".join(f"{size} of {name}" for name, size in data.sizes.items()) or "a single state"
-    need = "a plot needs several speeds or creepages and a field such as Q or M"
-    sentence = f"{need}, but this result has {found}"
-    raise ParameterError("plot", found, "a result over an axis", sentence)
+    raise ParameterError(
+        "plot",
+        found,
+        "a result over an axis",
+        "a plot needs several speeds or creepages and a field such as Q or M, but this result has "
+        f"{found}",
+    )

@@ -51,8 +51,7 @@ def master_curve(material: Any) -> Figure:
     times = material.T_ref * np.concatenate(
         [material.prony.T, material.prony.tau, [1.0][: not material.prony.E.size]]
     )
-    ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
-    t = np.logspace(*ends, _POINTS)
+    t = np.logspace(np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN, _POINTS)
     omega = 1.0 / t[::-1]  # reversed, so that it ascends
     title = material.name or "Material"
     band = inverse = None  # lowest and highest frequency, and the inverse of these
@@ -135,8 +134,10 @@ def identification(fit: Any) -> Figure:
         *others, variable = record.COORDINATES  # as t, or V and delta: the last one is drawn over
         curves = bool(others)  # of several speeds, which one line cannot connect
         order = np.argsort(np.ravel(getattr(record, variable)), kind="stable")
-        arrays = getattr(record, variable), fit.sigma[str(column)], *band
-        x, sigma, value, low, high = (np.ravel(array)[order] for array in arrays)
+        x, sigma, value, low, high = (
+            np.ravel(array)[order]
+            for array in (getattr(record, variable), fit.sigma[str(column)], *band)
+        )
         (top.vlines if curves else top.fill_between)(
             x, low, high, color="0.7" if curves else "0.85"
         )
@@ -192,7 +193,7 @@ def distributions(data: Dataset) -> Figure:
     levels = data["quantile"].values
     names = names_ending(data, "_quantiles")
     design = f", {about['design']}, seed {about['seed']}" if "design" in about else ""
-    columns = 2 if any(f"{name}_histogram" in data for name in names) else 1
+    columns = 1 + any(f"{name}_histogram" in data for name in names)
     rows = max(len(names), 1)
     figure, grid = new_figure(
         f"{about['motions']:,} motions{design}", rows, columns, 2.4 * rows, squeeze=False
