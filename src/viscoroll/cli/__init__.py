@@ -378,7 +378,8 @@ def parser() -> Parser:
     """
     program = Parser(
         prog="viscoroll",
-        description="Contact and motion of a viscoelastic cylinder, rolling with partial slip.\n\n"
+        description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a\n"
+        "half-space of its material or of another.\n\n"
         "If the scene or run file has a [cylinder] section, all inputs and outputs are in SI\n"
         "units.  Otherwise all are dimensionless.",
         epilog="example:\n  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 3e-3",

@@ -89,8 +89,10 @@ def _numbers_of_member(text: str) -> Any:
     except vr.ParameterError as error:
         raise ArgumentTypeError(f"{text!r}: {error}") from None
     except (ValueError, TypeError):
-        allowed = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several, separated by commas"
-        raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
+        raise ArgumentTypeError(
+            f"{text!r} must be a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, "
+            "separated by commas"
+        ) from None
 
 
 def roller_of_argument(text: str) -> Any:
@@ -136,7 +138,7 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
         problem = ""
         if Path(text).suffix.lower() not in suffixes:
             problem = f"must end in {allowed}"
-        elif not Path(text).parent.is_dir():
+        elif not os.path.isdir(os.path.dirname(text) or "."):
             problem = "cannot be written: its folder does not exist, make the folder first"
         elif os.path.isdir(text) and not text.endswith(".zarr"):
             problem = "cannot be written: it is a directory"
@@ -207,7 +209,7 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
         if "flag_meanings" in variable.attrs:  # codes and their meanings, by the CF conventions
             meanings = variable.attrs["flag_meanings"].split()
             frame[name] = frame[name].map(
-                dict(zip(np.ravel(variable.attrs["flag_values"]), meanings, strict=True))
+                dict(zip(np.ravel(variable.attrs["flag_values"]), meanings))
             )
     if "equilibrium" in frame:  # a load with fewer equilibria than another has NaN in the rest
         # the one column "V" or "V [m s-1]"

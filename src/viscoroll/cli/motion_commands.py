@@ -33,8 +33,7 @@ from .arguments import (
 
 # --- Contact and motion of a scene ---
 
-#: Positions along the contact in the output of ``stress``.
-_POSITIONS = 101
+
 #: Largest number of loads without an equilibrium that ``steady`` lists.
 _MOST_LINES = 3
 #: Help of a speed.
@@ -125,7 +124,7 @@ def stress(arguments: Namespace) -> None:
     speeds = {name: getattr(arguments, name) for name in ("V", "delta", "omega")}
     state = roller.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
-    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POSITIONS)
+    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, 101)
     # ahead is towards -x for V < 0: mirrored, and reversed so that x ascends
     x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
     show(arguments, roller.stress(x, **speeds))
@@ -193,8 +192,9 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
     }
 
 
-#: Loads, options of commands on steady rolling.
-_LOADS = (
+@command(
+    "steady",
+    SCENE,
     option("--force", type=numbers, help="force on the axis along V (default: 0)"),
     option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
     option(
@@ -202,13 +202,6 @@ _LOADS = (
         type=numbers,
         help="slope angle in rad, positive if +V points downhill; the normal load is P cos(slope)",
     ),
-)
-
-
-@command(
-    "steady",
-    SCENE,
-    *_LOADS,
     option(
         "--V",
         type=numbers,
@@ -267,7 +260,9 @@ def steady(arguments: Namespace) -> None:
         help="temperature of the surroundings in degrees Celsius",
     ),
     option("--conductance", type=numbers, required=True, help="heat given off per kelvin, W/(m K)"),
-    *_LOADS,
+    option("--force", type=numbers, help="force on the axis along V, N/m"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega, N m/m"),
+    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill"),
     add_table,
 )
 def heat(arguments: Namespace) -> None:
@@ -485,8 +480,6 @@ def sensitivity(arguments: Namespace) -> None:
 #: The figure of a scene reaches from the speed of the first extremum of M divided by this number to
 #: that of the last times it.
 _MARGIN = 30.0
-#: Number of speeds in the figure of a scene.
-_SPEEDS = 301
 
 
 @command(
@@ -586,4 +579,4 @@ def _figure_of_toml(path: str) -> Any:
     extrema = roller.resistance_extrema().V
     # extrema ascend in speed; without any both ends are the unit of speed
     low, high = (extrema[0], extrema[-1]) if extrema.size else (roller.scale["V"],) * 2
-    return roller.contact(np.geomspace(low / _MARGIN, high * _MARGIN, _SPEEDS), delta=0.0).plot()
+    return roller.contact(np.geomspace(low / _MARGIN, high * _MARGIN, 301), delta=0.0).plot()

@@ -205,9 +205,9 @@ def _first_wrong(array: Floats, wrong: Booleans) -> str:
     if array.size == 1:
         return str(array.item())
     first = tuple(map(int, np.argwhere(wrong)[0]))
-    index = f"at index {first[0] if array.ndim == 1 else first}"
-    more = int(np.count_nonzero(wrong)) - 1
-    return f"{array[first]} {index}" + (f", and {more} more" if more else "")
+    found = f"{array[first]} at index {first[0] if array.ndim == 1 else first}"
+    more = np.count_nonzero(wrong) - 1
+    return f"{found}, and {more} more" if more else found
 
 
 def extent(array: Floats) -> tuple[float, float]:
@@ -373,10 +373,6 @@ def check_bool(name: str, value: Any) -> bool:
 
 
 # --- Work on arrays by blocks ---
-
-#: Blocks submitted for each worker and not yet awaited.  A future takes a kilobyte, so that not all
-#: are submitted.
-_BLOCKS_IN_QUEUE = 8
 
 
 def block_reader(array: Floats, shape: Shape) -> Callable[[int, int], Floats]:
@@ -566,7 +562,8 @@ def run_blocks(
         try:
             for edge in edges:
                 waiting.append(pool.submit(work, *edge))
-                if len(waiting) > _BLOCKS_IN_QUEUE * workers:
+                # a future takes a kilobyte, so that not all are submitted
+                if len(waiting) > 8 * workers:
                     waiting.popleft().result()
             while waiting:
                 waiting.popleft().result()

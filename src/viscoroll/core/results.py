@@ -19,8 +19,6 @@ PAPER = (
     "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic "
     "half-space, Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
 )
-#: Rows of a summary in a notebook: more do not fit a screen.
-_MAX_ROWS = 40
 
 
 class SummaryRow(NamedTuple):
@@ -194,7 +192,7 @@ def as_html(title: str, rows: list[SummaryRow]) -> str:
         "<tr>"
         + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row)
         + "</tr>"
-        for row in rows[:_MAX_ROWS]
+        for row in rows[:40]  # more do not fit a screen
     )
     return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
 

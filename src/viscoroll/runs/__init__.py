@@ -67,8 +67,7 @@ __all__ = [
 
 #: Function that gives the task of a block, by its number, to an executor, and returns its future.
 Submit = Callable[[int], Any]
-#: Tasks submitted for each worker: the one that it works on and the next.
-_TASKS_PER_WORKER = 2
+
 #: Seconds between lines of progress where there is no terminal.
 LINE_EVERY = 30.0
 #: A cluster: "local", or the address of a dask scheduler, tcp://host:port, or the same with tls.
@@ -201,7 +200,7 @@ def _evaluate_missing(
             advance(start - checked, on_disk=True)
             checked = stop
             running.add(submit(block))
-            if len(running) >= _TASKS_PER_WORKER * workers:
+            if len(running) >= 2 * workers:  # the task that each works on, and the next
                 done, running = wait(running, return_when=FIRST_COMPLETED)
                 yield from (future.result() for future in done)
         advance(store.run.settings.n - checked, on_disk=True)
@@ -339,9 +338,6 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
 
 #: Motions of the trial by method; they take some tenths of a second.
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
-#: Resident bytes of a process after the trial (libraries, compiled kernels, the trial itself),
-#: measured on Linux; used where the system does not tell.
-_USUAL_RESIDENT = 4e8
 
 
 @dataclass(frozen=True)
@@ -478,12 +474,13 @@ def _time_of_laws(run: Run) -> float:
 def _peak_memory() -> float:
     """Return the largest resident memory of this process so far, in bytes, as the system counts it.
 
-    On Windows, where Python does not tell it, :data:`_USUAL_RESIDENT` is returned, 4e8 bytes.
+    On Windows, where Python does not tell it, the result is that of a process after the trial
+    (libraries, compiled kernels, the trial itself) on Linux, 4e8 bytes.
     """
     try:
         import resource
     except ImportError:
-        return _USUAL_RESIDENT
+        return 4e8
     # macOS counts bytes, other systems KiB
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (
         1 if sys.platform == "darwin" else 1024

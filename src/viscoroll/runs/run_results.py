@@ -148,9 +148,6 @@ def start_of(root: Path) -> Record:
 
 # --- A finished store as a result that prints itself and gives datasets ---
 
-#: Moments of a quantity in the summaries, as the ends of their names.
-_MOMENTS = ("mean", "std", "min", "max")
-
 
 class RunResults(Result):
     """Results of a run in a folder, as :func:`runs.open_run` returns them.
@@ -294,7 +291,7 @@ class RunResults(Result):
         time = column_name("t", unit_of(data["t"].attrs))
         for name in self.names:
             columns: dict[Any, Any] = {
-                moment: data[f"{name}_{moment}"].values for moment in _MOMENTS
+                moment: data[f"{name}_{moment}"].values for moment in ("mean", "std", "min", "max")
             }
             columns |= zip(data["quantile"].values.tolist(), data[f"{name}_quantiles"].values)
             columns = {column: np.atleast_1d(values) for column, values in columns.items()}
@@ -390,10 +387,7 @@ def open_run(path: FilePath) -> RunResults:
 
 # --- Export of a store to one netCDF-4 file ---
 
-#: Largest ratio of deflated to plain size, of bytes that cannot be compressed.
-_DEFLATE_RATIO = 1.002
-#: Bytes of a chunk in the index of an array, at most.
-_INDEX_ENTRY = 512
+
 #: Bytes of the head of an array, and of the file, at most.
 _HEAD = 1 << 16
 #: Bytes written at a time where the system cannot reserve disk space.
@@ -485,7 +479,8 @@ def _append_motions(store: Path, path: Path) -> None:
 def _largest_size(array: Any) -> int:
     """Return the bytes that an array of zarr takes in the file at most, whatever its values."""
     chunk = array.dtype.itemsize * math.prod(array.chunks)
-    return array.nchunks * int(_DEFLATE_RATIO * chunk + _INDEX_ENTRY) + _HEAD
+    # bytes that cannot be compressed grow by 0.2 %, and a chunk takes 512 bytes in the index
+    return array.nchunks * int(1.002 * chunk + 512) + _HEAD
 
 
 def _reserve(path: Path, size: int) -> None:

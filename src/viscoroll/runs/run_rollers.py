@@ -152,10 +152,8 @@ class Rollers(Cylinder):
         """
         scale = super().scale
         if self.seconds:
-            scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {
-                "x": scale["V"],
-                "angle": scale["omega"],
-            }
+            in_seconds = dict.fromkeys(("t", "onset_time", "rest_time"), 1.0)
+            scale.update(in_seconds, x=scale["V"], angle=scale["omega"])
         return scale
 
 
@@ -323,7 +321,7 @@ def _body(path: Path, name: str, section: Any) -> Any:
     if np.ndim(factors):
         series = series.slower(factors)
     E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
-    if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
+    if not (series.shape or any(map(np.ndim, (E, nu, thickness)))):
         return typical
     if thickness is not None:
         thickness = check_array("thickness", thickness, above=0.0)

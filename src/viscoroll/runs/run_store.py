@@ -51,10 +51,6 @@ from .uncertain_inputs import Columns
 
 # --- One block of a run, a range of its motions ---
 
-#: Number of motions whose starts are compared with the bands of the materials: the standard error
-#: of a share of 1 % is then a third of it.
-_STARTS = 1000
-
 
 def block_inputs(run: Run, block: int, most: int | None = None) -> Columns:
     """Draw the inputs of the motions of a block: the same run, block and ``most`` give the same
@@ -208,7 +204,8 @@ def _fraction_outside(run: Run) -> float:
     Raises ParameterError for inputs of these motions that a cylinder does not allow, FileError for
     a material.
     """
-    content = run.inputs.filled(block_inputs(run, 0, _STARTS))
+    # of 1000 starts the standard error of a share of 1 % is a third of it
+    content = run.inputs.filled(block_inputs(run, 0, most=1000))
     roller: Any = roller_of(run.path, content)
     V0 = np.abs(content["start"]["V0"])
     scene = roller.scene()
@@ -224,10 +221,6 @@ def _fraction_outside(run: Run) -> float:
 
 #: Group of the motions in a store.
 MOTIONS = "motions"
-#: File in the folder of records that one process locks.
-_LOCK = ".lock"
-#: Columns of one number for each motion that are kept beside the fields.
-_END_COLUMNS = ("onset_time", "rest_time", "status", "flow")
 
 
 @dataclass(frozen=True)
@@ -470,8 +463,9 @@ def columns_of(run: Run, values: Named, motions: Ensemble) -> dict[str, NDArray]
     Raises KeyError for an input that ``values`` does not have.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
-    columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
-    return columns | {"flow": columns["flow"].astype(np.int8)}
+    kept = (*run.settings.fields, "onset_time", "rest_time", "status")
+    columns |= {name: getattr(motions, name) for name in kept}
+    return columns | {"flow": motions.flow.astype(np.int8)}
 
 
 def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
@@ -512,7 +506,7 @@ def locked(root: Path) -> Iterator[None]:
     from filelock import FileLock, Timeout
 
     make_folder(root / RECORDS)
-    lock = FileLock(root / RECORDS / _LOCK, timeout=0)
+    lock = FileLock(root / RECORDS / ".lock", timeout=0)
     try:
         lock.acquire()
     except Timeout:

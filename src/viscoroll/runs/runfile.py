@@ -424,7 +424,7 @@ def _fault_of(run: Run, values: Named) -> ParameterError | FileError | None:
             if given is not False and isinstance(roller, Rollers) and roller.seconds:
                 allowed = "left out if T_epsilon is uncertain"
                 return ParameterError(name, str(given).lower(), allowed)
-        start = tuple(content["start"].get(name) for name in START)
+        start = tuple(map(content["start"].get, START))
         options = SolverOptions(
             rtol=settings.rtol,
             rest=settings.rest,

@@ -19,6 +19,7 @@ from . import (
     quantile_bands,
     small_legend,
     spaced_by_factors,
+    symbol_label,
     variable_label,
     with_unit,
     zero_line,
@@ -200,7 +201,7 @@ def distributions(data: Dataset) -> Figure:
     )
     for name, (left, *right) in zip(names, grid):
         variable = data[f"{name}_quantiles"]
-        label = axis_label(name, variable.attrs["units"], variable.attrs.get("symbol", ""))
+        label = symbol_label(variable.rename(name))
         if "t" in variable.dims and data.sizes["t"] > 1:
             quantile_bands(left, t := data["t"].values, levels, variable.values)
             left.set(xlabel=variable_label(data["t"]), ylabel=label, xlim=(t[0], t[-1]))
