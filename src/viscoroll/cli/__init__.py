@@ -323,11 +323,7 @@ class _StoreOnce(argparse.Action):
     """Stores a value; an option that is given twice is an error, while argparse takes the last."""
 
     def __call__(
-        self,
-        parser: Any,
-        namespace: argparse.Namespace,
-        values: Any,
-        name: str | None = None,
+        self, parser: Any, namespace: argparse.Namespace, values: Any, name: str | None = None
     ) -> None:
         """Store the value of an option or a positional argument; an option that had one before is
         an error.

@@ -157,7 +157,7 @@ class Result:
 
     def __contains__(self, name: object) -> bool:
         """Whether ``name`` is one of :meth:`keys`."""
-        return name in self.keys()
+        return name in tuple(self.keys())
 
     def __repr__(self) -> str:
         return as_text(*self._summary())
@@ -269,7 +269,7 @@ class Values(Result):
         self,
         values: Named,
         given: Named | None = None,
-        own: dict[str, dict[str, str]] | None = None,
+        own: dict[str, Named] | None = None,
         title: str = "Contact",
         *,
         si: bool = False,
