@@ -41,12 +41,11 @@ Names = tuple[str, ...]
 Named = dict[str, Any]
 
 if TYPE_CHECKING:
-    Reals = NDArray[np.floating[Any] | np.integer[Any]]
 
     class SupportsArray(Protocol):
         """Arrays and scalars of numpy, arrays of xarray and pandas."""
 
-        def __array__(self) -> Reals: ...
+        def __array__(self) -> NDArray[np.floating[Any] | np.integer[Any]]: ...
 
     #: One number, or an array of numpy, xarray or pandas, or nested lists; no text.
     Numbers = (

@@ -452,7 +452,7 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
     return ", ".join(repr(each) for each in get_args(kind) if isinstance(each, str))
 
 
-def _sections_in(kind: Any) -> list[Any]:
+def _sections_in(kind: Any) -> list:
     """Return those of a type, or of the members of a union as Section | None, that have keys."""
     return [
         each

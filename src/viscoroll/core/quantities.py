@@ -475,7 +475,7 @@ def _is_quantity(value: Any) -> bool:
     return hasattr(value, "magnitude") and hasattr(value, "to")
 
 
-def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
+def _split_elements(name: str, values: Any) -> tuple[list, str | None]:
     """Split the unit from the elements of a list, all converted to the unit of the first.
 
     name: name of the argument, for errors.

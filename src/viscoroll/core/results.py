@@ -197,7 +197,7 @@ def as_html(title: str, rows: list[SummaryRow]) -> str:
     return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
 
 
-def unit_of(attributes: Mapping[Any, Any]) -> str:
+def unit_of(attributes: Mapping) -> str:
     """Return the unit in the ``attributes`` of a variable, "" of a dimensionless one."""
     unit = str(attributes.get("units", "1"))
     return "" if unit == "1" else unit

@@ -93,7 +93,7 @@ def read_record(path: Path) -> Record | None:
         return None
 
 
-def _encode_array(array: np.ndarray) -> list[Any]:
+def _encode_array(array: np.ndarray) -> list:
     """Return [type as numpy writes it, as "<i8"; bytes] of an ``array``, which MessagePack has no
     type for.
     """

@@ -290,7 +290,7 @@ class RunResults(Result):
         tables = []
         time = column_name("t", unit_of(data["t"].attrs))
         for name in self.names:
-            columns: dict[Any, Any] = {
+            columns: dict = {
                 moment: data[f"{name}_{moment}"].values for moment in ("mean", "std", "min", "max")
             }
             columns |= zip(data["quantile"].values.tolist(), data[f"{name}_quantiles"].values)

@@ -252,7 +252,7 @@ def drive_of(content: Named) -> Named:
     }
 
 
-def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
+def _schedule(name: str, times: list, values: list) -> Schedule:
     """Make a load, or a prescribed speed, that is piecewise linear in time, from lists by corner.
 
     name: name of the load or speed, for errors.

@@ -269,7 +269,7 @@ def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
         return {key: _fill_in(member, values) for key, member in part.items()}
     if not isinstance(part, list):
         return part
-    numbers: list[Any] = []
+    numbers: list = []
     for member in part:
         # the number before, itself perhaps that of an input
         numbers.append(numbers[-1] if numbers and member == SAME else _fill_in(member, values))

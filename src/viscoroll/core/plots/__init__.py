@@ -58,7 +58,7 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[Figure, list[Any]]:
+def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[Figure, list]:
     """Make a figure with several axes of one size, two in a row.
 
     title: text on top of the figure.
@@ -102,12 +102,12 @@ def plot_measured_range(
     return drawn
 
 
-def has_numbers(x: NDArray[Any]) -> bool:
+def has_numbers(x: NDArray) -> bool:
     """Whether an array has real numbers, not texts, dates or other objects."""
     return x.dtype.kind in "iuf"
 
 
-def spaced_by_factors(x: NDArray[Any]) -> bool:
+def spaced_by_factors(x: NDArray) -> bool:
     """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a
     linear one.
 
@@ -500,7 +500,7 @@ def _shown_fields(data: Dataset) -> list[str]:
     return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
 
-def _finite(values: DataArray) -> NDArray[Any]:
+def _finite(values: DataArray) -> NDArray:
     """Return the finite ``values``, 0 if there is none."""
     found = values.values[np.isfinite(values.values)]
     return found if found.size else np.zeros(1)
