@@ -240,7 +240,7 @@ def _executor(
     if cluster is None:
         interrupted = threading.Event()
         workers = thread_count(threads)
-        pool = ThreadPoolExecutor(workers, initializer=cancel_with, initargs=(interrupted,))
+        pool: Any = ThreadPoolExecutor(workers, initializer=cancel_with, initargs=(interrupted,))
         try:
             yield partial(pool.submit, store.evaluate), workers
         except BaseException:
