@@ -91,7 +91,6 @@ def warm_up(arguments: argparse.Namespace) -> None:
     from tqdm import tqdm
 
     from ..kernels.numerics import cache_folder
-    from ..kernels.numerics.cache_folder import cache_root
 
     cache_folder.announced = True  # the bar takes the place of the notice
     start = time.perf_counter()
@@ -102,10 +101,8 @@ def warm_up(arguments: argparse.Namespace) -> None:
         if count % 4 == 3:  # the compiler leaves some 30 MB a call behind; collecting takes 0.7 s
             gc.collect()
         call()
-    print(
-        f"the compiled functions of {len(calls)} kinds of calls are in {cache_root()}, after "
-        f"{time.perf_counter() - start:.1f} s"
-    )
+    where = f"{len(calls)} kinds of calls are in {cache_folder.cache_root()}"
+    print(f"the compiled functions of {where}, after {time.perf_counter() - start:.1f} s")
 
 
 def _calls() -> dict[str, Callable[[], Any]]:
@@ -244,10 +241,8 @@ def _check() -> str:
         Q = vr.contact(vr.presets.PAPER_SECTION_5, 0.5, delta=-0.01, fields="Q").Q
         seconds = time.perf_counter() - start
     texts = "".join(f"; {warning.message}" for warning in caught)
-    return (
-        f"contact of paper-section-5 at V = 0.5, delta = -0.01: Q = {Q:.12g}, {seconds:.1f} "
-        f"s{texts}"
-    )
+    state = "contact of paper-section-5 at V = 0.5, delta = -0.01"
+    return f"{state}: Q = {Q:.12g}, {seconds:.1f} s{texts}"
 
 
 def _version(name: str) -> str | None:
@@ -285,10 +280,7 @@ def _fault_of_cache(folder: Path) -> str:
 
 # --- Parser and exit codes of the program ---
 
-#: Exit code of a program that SIGINT ended, as shells report it.
-_INTERRUPTED = 130
-#: Exit code of a program that SIGPIPE ended, as shells report it.
-_BROKEN_PIPE = 141
+
 #: First word of several commands -> its help.
 _GROUPS = {
     "material": "Show a material, or fit one to measurements",
@@ -331,11 +323,7 @@ class _StoreOnce(argparse.Action):
     """Stores a value; an option that is given twice is an error, while argparse takes the last."""
 
     def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        values: Any,
-        name: str | None = None,
+        self, parser: Any, namespace: argparse.Namespace, values: Any, name: str | None = None
     ) -> None:
         """Store the value of an option or a positional argument; an option that had one before is
         an error.
@@ -386,12 +374,10 @@ def parser() -> Parser:
     """
     program = Parser(
         prog="viscoroll",
-        description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a "
-        "half-space of its\n"
-        "material or of another.\n\n"
-        "If the scene or run file has a [cylinder] section, all inputs and outputs are in SI "
-        "units.\n"
-        "Otherwise all are dimensionless.",
+        description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a\n"
+        "half-space of its material or of another.\n\n"
+        "If the scene or run file has a [cylinder] section, all inputs and outputs are in SI\n"
+        "units.  Otherwise all are dimensionless.",
         epilog="example:\n  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 3e-3",
     )
     program.add_argument("--version", action="version", version=f"viscoroll {vr.__version__}")
@@ -403,19 +389,13 @@ def parser() -> Parser:
             subparser = groups[""].add_parser(group, help=_GROUPS[group])
             groups[group] = subparser.add_subparsers(metavar="COMMAND", required=True)
         help_text = (inspect.getdoc(run) or "").partition("\n\narguments:")[0]
-        text, _, example = help_text.partition("\n\nexample:")
+        text, word, example = help_text.partition("\n\nexample:")
         # the first sentence, which ends its line
         summary = text.partition(".\n")[0].rstrip(".")
-        epilog = f"example:{example}" if example else None
+        epilog = word.lstrip() + example
         subparser = groups[group].add_parser(name, help=summary, description=text, epilog=epilog)
-        for given in options:
-            # a list is a group of which one at most may be given
-            alternatives = given if isinstance(given, list) else [given]
-            target = (
-                subparser.add_mutually_exclusive_group() if alternatives is given else subparser
-            )
-            for add_to in alternatives:
-                add_to(target)
+        for add_to in options:
+            add_to(subparser)
         subparser.set_defaults(run=run)
     return program
 
@@ -450,14 +430,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt as interrupt:
         if isinstance(interrupt, Interrupted):
             _print_line(interrupt)
-        return _INTERRUPTED
+        return 130  # as shells report a program that SIGINT ended
     except OSError as error:
         # a file that may fail raises FileError; an OSError without a name is of standard output
         if error.filename is not None:
             return _print_error(f"{error.filename}: {error.strerror}")
         _discard(sys.stdout)
         if isinstance(error, BrokenPipeError):
-            return _BROKEN_PIPE
+            return 141  # as shells report a program that SIGPIPE ended
         return _print_error(f"standard output: {error.strerror}")
 
 

@@ -27,20 +27,17 @@ CommandFunction = Callable[[Namespace], int | None]
 
 #: Argument of a command: a function that adds it to a parser of argparse, or to a group of one.
 Option = Callable[[Any], Any]
-#: Words of a command -> (function that runs it, its arguments; of a list of arguments a command
-#: line may have one only), in the order of ``--help``.
-COMMANDS: dict[str, tuple[CommandFunction, tuple[Option | list[Option], ...]]] = {}
+#: Words of a command -> (function that runs it, its arguments), in the order of ``--help``.
+COMMANDS: dict[str, tuple[CommandFunction, tuple[Option, ...]]] = {}
 
 
-def command(
-    words: str, *options: Option | list[Option]
-) -> Callable[[CommandFunction], CommandFunction]:
+def command(words: str, *options: Option) -> Callable[[CommandFunction], CommandFunction]:
     """Return a decorator that adds a function to :data:`COMMANDS`, so that the program has it as a
     command.
 
     words: words of the command, as "tables law"; its help is the docstring of its function.
     options: options of the command, in the order of its help, each as :func:`option` or
-        :func:`arguments` returns it; a list of them is a group of which one at most may be given.
+        :func:`output` returns it, or :func:`add_table`.
     Returns a decorator that takes the function of the command and returns it unchanged.
     """
 
@@ -92,10 +89,10 @@ def _numbers_of_member(text: str) -> Any:
     except vr.ParameterError as error:
         raise ArgumentTypeError(f"{text!r}: {error}") from None
     except (ValueError, TypeError):
-        allowed = (
-            "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, separated by commas"
-        )
-        raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
+        raise ArgumentTypeError(
+            f"{text!r} must be a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, "
+            "separated by commas"
+        ) from None
 
 
 def roller_of_argument(text: str) -> Any:
@@ -136,20 +133,20 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
         Raises ArgumentTypeError for another suffix, a folder that does not exist, and a directory
         other than a .zarr.
         """
-        text = (
-            text.rstrip("/") if text.endswith(".zarr/") else text
-        )  # as shells complete the name of a folder
+        if text.endswith(".zarr/"):  # as shells complete the name of a folder
+            text = text.rstrip("/")
+        problem = ""
         if Path(text).suffix.lower() not in suffixes:
-            raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
-        if not os.path.isdir(os.path.dirname(text) or "."):
-            raise ArgumentTypeError(
-                f"{text!r} cannot be written: its folder does not exist, make the folder first"
-            )
-        if os.path.isdir(text) and not text.endswith(".zarr"):
-            raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
+            problem = f"must end in {allowed}"
+        elif not os.path.isdir(os.path.dirname(text) or "."):
+            problem = "cannot be written: its folder does not exist, make the folder first"
+        elif os.path.isdir(text) and not text.endswith(".zarr"):
+            problem = "cannot be written: it is a directory"
+        if problem:
+            raise ArgumentTypeError(f"{text!r} {problem}")
         return Path(text)
 
-    text = f"{' or '.join(suffixes)}{more}"
+    allowed = " or ".join(suffixes)
     return option(
         name,
         # argparse would call the argument of -o by its letter
@@ -157,7 +154,7 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
         metavar="FILE",
         type=path,
         required=required,
-        help=text,
+        help=allowed + more,
     )
 
 
@@ -170,16 +167,22 @@ SCENE = option(
     help="TOML file with [cylinder] (all numbers are in SI units), or with [scene] or preset (all "
     "numbers are dimensionless); or the name of a preset (dimensionless)",
 )
-#: Output of a table of numbers: to a file, or to standard output in a format.
-TABLE = [
-    output(".txt", ".csv", ".nc", required=False, more="; default: standard output"),
-    option(
+
+
+def add_table(parser: Any) -> None:
+    """Add the options of the output of a table of numbers, of which one at most may be given: to a
+    file, or to standard output in a format.
+
+    parser: parser of argparse, to which they are added.
+    """
+    group = parser.add_mutually_exclusive_group()
+    output(".txt", ".csv", ".nc", required=False, more="; default: standard output")(group)
+    group.add_argument(
         "--format",
         choices=("text", "csv", "json"),
         default="text",
         help="format of standard output (default: text)",
-    ),
-]
+    )
 
 
 # --- Output of results ---
@@ -206,7 +209,7 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
         if "flag_meanings" in variable.attrs:  # codes and their meanings, by the CF conventions
             meanings = variable.attrs["flag_meanings"].split()
             frame[name] = frame[name].map(
-                dict(zip(np.ravel(variable.attrs["flag_values"]), meanings, strict=True))
+                dict(zip(np.ravel(variable.attrs["flag_values"]), meanings))
             )
     if "equilibrium" in frame:  # a load with fewer equilibria than another has NaN in the rest
         # the one column "V" or "V [m s-1]"
@@ -240,12 +243,8 @@ def deliver(arguments: Namespace, data: Dataset, frame: DataFrame, heading: str)
     elif suffix == "json":
         # as objects, since a column of floats would keep NaN in place of None
         finite = frame.replace([float("inf"), -float("inf")], float("nan")).astype(object)
-        text = (
-            json.dumps(
-                finite.where(finite.notna(), None).to_dict("list"), indent=1, allow_nan=False
-            )
-            + "\n"
-        )
+        columns = finite.where(finite.notna(), None).to_dict("list")
+        text = json.dumps(columns, indent=1, allow_nan=False) + "\n"
     else:
         meanings = {
             str(name): variable.attrs.get("long_name", "") for name, variable in data.items()
@@ -272,12 +271,11 @@ def as_text(frame: DataFrame, heading: str, meanings: dict[str, str] | None = No
     if frame.empty:
         return f"{heading}\n"
     if meanings is None or len(frame) != 1:
-        return f"{heading}\n\n{frame.to_string(index=False, float_format='{:.10g}'.format, na_rep='')}\n"  # noqa: E501
+        text = frame.to_string(index=False, float_format="{:.10g}".format, na_rep="")
+        return f"{heading}\n\n{text}\n"
     lines = []
     for column, value in frame.iloc[0].items():
         name, _, unit = str(column).partition(" ")
-        number = (
-            f"{value:.10g} {unit.strip('[]')}".rstrip() if isinstance(value, float) else str(value)
-        )
-        lines.append(f"{name:>11} = {number:<20} {meanings.get(name, '')}".rstrip())
+        number = f"{value:.10g} {unit.strip('[]')}" if isinstance(value, float) else str(value)
+        lines.append(f"{name:>11} = {number.rstrip():<20} {meanings.get(name, '')}".rstrip())
     return "\n".join([heading, "", *lines, ""])

@@ -15,7 +15,17 @@ from typing import Any
 import viscoroll as vr
 
 from ..core import described_error, write_dataset, write_text
-from .arguments import FIGURES, FILE, SCENE, command, numbers, option, output, roller_of_argument
+from .arguments import (
+    FIGURES,
+    FILE,
+    SCENE,
+    as_text,
+    command,
+    numbers,
+    option,
+    output,
+    roller_of_argument,
+)
 
 # --- Materials and measurements ---
 
@@ -49,11 +59,11 @@ def show(arguments: Namespace) -> None:
     """
     import pandas as pd
 
-    from ..core import as_text
+    from ..core import as_text as summary_text
     from ..materials import read_materials
 
     for section, material in read_materials(arguments.file).items():
-        print(f"[{section}] {as_text(*material._summary())}\n")
+        print(f"[{section}] {summary_text(*material._summary())}\n")
         series = material.prony
         T = material.T_ref
         if series.E.size:
@@ -63,12 +73,9 @@ def show(arguments: Namespace) -> None:
                 "J_i": series.J,
                 "T_i [s]": series.T * T,
             }
-            mean = f"T_mean = {series.T_mean * T:.6g} s"
-            print(f"Slow rolling on the same material: moment M / load P = V T_mean in m, {mean}\n")
-            print(
-                pd.DataFrame(columns).to_string(index=False, float_format="{:.10g}".format),
-                end="\n\n",
-            )
+            heading = "Slow rolling on the same material: moment M / load P = V T_mean in m, "
+            heading += f"T_mean = {series.T_mean * T:.6g} s"
+            print(as_text(pd.DataFrame(columns), heading))
 
 
 def _named_heading(text: str) -> tuple[str, str]:
@@ -323,20 +330,15 @@ def _low_high(text: str) -> tuple[float, ...]:
 
 
 def _export(table: Any, path: Path) -> None:
-    """Write a law or a grid in the format of the suffix of a path, and print the size of the file.
-
-    table: dataset of a law or a grid.
-    path: path of the file.
+    """Write a law or a grid, a dataset ``table``, in the format of the suffix of a ``path``, and
+    print the size of the file.
     """
     vr.tables.export(table, path)
     _print_size(path)
 
 
 def _print_size(path: Path) -> None:
-    """Print the name and the size of a written file, in kB of 1000 bytes, on standard output.
-
-    path: path of the file.
-    """
+    """Print the name and the size of the written file at ``path``, in kB of 1000 bytes."""
     print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 
 
@@ -590,11 +592,7 @@ def fmu(arguments: Namespace) -> None:
     source = vr.load_law(path) if not content and is_law(path) else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
-        text = (
-            "an FMU is in SI units: kappa, mu, gamma and j of the dimensionless scene are not "
-            "used; set R, "
-        )
-        warnings.warn(
-            f"{text}E_prime, T_ref, mu, load and mass in the tool", vr.ModelWarning, stacklevel=2
-        )
+        text = "an FMU is in SI units: kappa, mu, gamma and j of the dimensionless scene are not "
+        text += "used; set R, E_prime, T_ref, mu, load and mass in the tool"
+        warnings.warn(text, vr.ModelWarning, stacklevel=2)
     _print_size(arguments.output)

@@ -19,8 +19,8 @@ import viscoroll as vr
 from .arguments import (
     FIGURES,
     SCENE,
-    TABLE,
     Option,
+    add_table,
     as_text,
     command,
     deliver,
@@ -33,8 +33,7 @@ from .arguments import (
 
 # --- Contact and motion of a scene ---
 
-#: Positions along the contact in the output of ``stress``.
-_POSITIONS = 101
+
 #: Largest number of loads without an equilibrium that ``steady`` lists.
 _MOST_LINES = 3
 #: Help of a speed.
@@ -60,7 +59,7 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
     )
 
 
-@command("contact", *_speeds(numbers), TABLE)
+@command("contact", *_speeds(numbers), add_table)
 def contact(arguments: Namespace) -> None:
     """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
 
@@ -89,19 +88,14 @@ def contact(arguments: Namespace) -> None:
     """  # noqa: E501
     import numpy as np
 
-    V = arguments.V
-    creep = arguments.omega if arguments.delta is None else arguments.delta
+    speeds = {name: getattr(arguments, name) for name in ("V", "delta", "omega")}
     # all pairs, speeds along the first axis, so that the states of the first speed come first
-    V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
-    show(
-        arguments,
-        roller_of_argument(arguments.scene).contact(
-            V, delta=arguments.delta, omega=arguments.omega
-        ),
-    )
+    if np.ndim(arguments.V) and (np.ndim(arguments.delta) or np.ndim(arguments.omega)):
+        speeds["V"] = arguments.V[:, None]
+    show(arguments, roller_of_argument(arguments.scene).contact(**speeds))
 
 
-@command("stress", *_speeds(float), TABLE)
+@command("stress", *_speeds(float), add_table)
 def stress(arguments: Namespace) -> None:
     """Compute pressure and shear stress along the contact.
 
@@ -130,7 +124,7 @@ def stress(arguments: Namespace) -> None:
     speeds = {name: getattr(arguments, name) for name in ("V", "delta", "omega")}
     state = roller.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
-    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POSITIONS)
+    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, 101)
     # ahead is towards -x for V < 0: mirrored, and reversed so that x ascends
     x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
     show(arguments, roller.stress(x, **speeds))
@@ -147,7 +141,7 @@ def stress(arguments: Namespace) -> None:
         required=True,
         help="output times, written as the numbers of `viscoroll contact`",
     ),
-    TABLE,
+    add_table,
 )
 def roll(arguments: Namespace) -> None:
     """Integrate one free motion from given initial speeds.
@@ -213,7 +207,7 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
         type=numbers,
         help="prescribed speed; it takes the place of --force or --torque, which is then computed",
     ),
-    TABLE,
+    add_table,
 )
 def steady(arguments: Namespace) -> None:
     """Find the steady speeds under force, torque or slope.
@@ -244,14 +238,12 @@ def steady(arguments: Namespace) -> None:
         loads["force"] = [0.0]
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
-    if len(lines) > _MOST_LINES:
-        further = len(lines) - _MOST_LINES
+    if (further := len(lines) - _MOST_LINES) > 0:
         lines[_MOST_LINES:] = [
             f"no steady speed for {further} more of the loads, of which the first is load 0"
         ]
-    if (
-        arguments.output is not None or arguments.format != "text"
-    ):  # a table for programs has no heading
+    # a table for programs has no heading
+    if arguments.output is not None or arguments.format != "text":
         for line in lines:
             warnings.warn(line, vr.ModelWarning, stacklevel=2)
     show(arguments, equilibria, "\n".join(lines))
@@ -271,7 +263,7 @@ def steady(arguments: Namespace) -> None:
     option("--force", type=numbers, help="force on the axis along V, N/m"),
     option("--torque", type=numbers, help="torque on the cylinder along omega, N m/m"),
     option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill"),
-    TABLE,
+    add_table,
 )
 def heat(arguments: Namespace) -> None:
     """Find the temperatures at which a cylinder runs.
@@ -429,7 +421,7 @@ def verify(arguments: Namespace) -> int:
         help="base points, rounded up to a power of two (default: 4096); a base point "
         "takes a motion for every uncertain input and two more",
     ),
-    TABLE,
+    add_table,
 )
 def sensitivity(arguments: Namespace) -> None:
     """Compute Sobol indices of the uncertain inputs of a run file.
@@ -461,26 +453,23 @@ def sensitivity(arguments: Namespace) -> None:
     """  # noqa: E501
     from ..runs.sensitivity import sobol_indices, table
 
-    indices = sobol_indices(
-        vr.runs.read_run(arguments.run_file), arguments.n, progress=sys.stderr.isatty()
-    )
+    run = vr.runs.read_run(arguments.run_file)
+    indices = sobol_indices(run, arguments.n, progress=sys.stderr.isatty())
     frame = table(indices)
     about = indices.attrs
-    n = about["asked_base_points"]
     base = about["base_points"]
-    rounded = "" if base == n else f" ({n}, rounded up to a power of two)"
-    heading = "\n".join(
-        (
-            f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed "
-            f"{about['seed']}",
-            *(
-                f"{about[key]} motions: {key.removeprefix('ended: ')}"
-                for key in about
-                if key.startswith("ended: ")
-            ),
-            *(f"no indices for {reason}" for reason in about["refused"].splitlines()),
-        )
-    )
+    rounded = f" ({arguments.n}, rounded up to a power of two)" * (base != arguments.n)
+    lines = [
+        f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, "
+        f"seed {about['seed']}"
+    ]
+    lines += [
+        f"{count} motions: {key.removeprefix('ended: ')}"
+        for key, count in about.items()
+        if key.startswith("ended: ")
+    ]
+    lines += [f"no indices for {reason}" for reason in about["refused"].splitlines()]
+    heading = "\n".join(lines)
     deliver(arguments, indices, frame, heading)
     if arguments.output is not None:
         print(as_text(frame, heading), end="")
@@ -491,8 +480,6 @@ def sensitivity(arguments: Namespace) -> None:
 #: The figure of a scene reaches from the speed of the first extremum of M divided by this number to
 #: that of the last times it.
 _MARGIN = 30.0
-#: Number of speeds in the figure of a scene.
-_SPEEDS = 301
 
 
 @command(
@@ -523,13 +510,9 @@ def plot(arguments: Namespace) -> None:
     }
     path = arguments.what
     if (draw := kinds.get(Path(path).suffix.lower())) is None:
-        raise vr.ParameterError(
-            "plot",
-            path,
-            "a file to plot",
-            f"{path!r} is not a file that can be plotted: give FILE.nc, SCENE.toml, "
-            "MATERIAL.toml or STORE.zarr",
-        )
+        allowed = "FILE.nc, SCENE.toml, MATERIAL.toml or STORE.zarr"
+        sentence = f"{path!r} is not a file that can be plotted: give {allowed}"
+        raise vr.ParameterError("plot", path, allowed, sentence)
     save(draw(path), arguments.output)
 
 
@@ -596,4 +579,4 @@ def _figure_of_toml(path: str) -> Any:
     extrema = roller.resistance_extrema().V
     # extrema ascend in speed; without any both ends are the unit of speed
     low, high = (extrema[0], extrema[-1]) if extrema.size else (roller.scale["V"],) * 2
-    return roller.contact(np.geomspace(low / _MARGIN, high * _MARGIN, _SPEEDS), delta=0.0).plot()
+    return roller.contact(np.geomspace(low / _MARGIN, high * _MARGIN, 301), delta=0.0).plot()

@@ -4,8 +4,11 @@ from .arrays import ArrayLike as ArrayLike
 from .arrays import Booleans as Booleans
 from .arrays import Floats as Floats
 from .arrays import Integers as Integers
+from .arrays import Named as Named
+from .arrays import Names as Names
 from .arrays import NDArray as NDArray
 from .arrays import Numbers as Numbers
+from .arrays import Shape as Shape
 from .arrays import block_reader as block_reader
 from .arrays import broadcast_rows as broadcast_rows
 from .arrays import broadcast_shape as broadcast_shape
@@ -64,6 +67,7 @@ from .files import as_struct as as_struct
 from .files import check_keys as check_keys
 from .files import fix_texts as fix_texts
 from .files import load_kept as load_kept
+from .files import names_ending as names_ending
 from .files import read_sealed as read_sealed
 from .files import read_toml as read_toml
 from .files import replace_file as replace_file

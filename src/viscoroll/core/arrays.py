@@ -14,10 +14,10 @@ import math
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Sequence
-from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from collections.abc import Callable, Collection, Sequence
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,22 +28,27 @@ from .quantities import Units, has_no_unit, is_real, to_unit
 # --- Types of arrays, and of the numbers that callers may give, for type checkers ---
 
 #: Array of doubles, as results hold them.
-Floats: TypeAlias = NDArray[np.float64]
+Floats = NDArray[np.float64]
 #: Array of 64-bit integers, such as indices.
-Integers: TypeAlias = NDArray[np.int64]
+Integers = NDArray[np.int64]
 #: Array of truth values.
-Booleans: TypeAlias = NDArray[np.bool_]
+Booleans = NDArray[np.bool_]
+#: Shape of an array.
+Shape = tuple[int, ...]
+#: Names of axes, quantities or inputs, in their order.
+Names = tuple[str, ...]
+#: Values by name, as arguments, attributes, or the keys of a file.
+Named = dict[str, Any]
 
 if TYPE_CHECKING:
-    Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 
     class SupportsArray(Protocol):
         """Arrays and scalars of numpy, arrays of xarray and pandas."""
 
-        def __array__(self) -> Reals: ...
+        def __array__(self) -> NDArray[np.floating[Any] | np.integer[Any]]: ...
 
     #: One number, or an array of numpy, xarray or pandas, or nested lists; no text.
-    Numbers: TypeAlias = (
+    Numbers = (
         float
         | SupportsArray
         | Sequence[float]
@@ -55,9 +60,6 @@ else:
 
 
 # --- Checks of numbers that callers give ---
-
-#: Bytes of a double.  Wider floats may overflow in the conversion.
-_DOUBLE = 8
 
 
 def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
@@ -183,7 +185,7 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
         words = _range_words(*bounds)
         allowed = f"a number, {words}" if words else "a finite number"
         raise ParameterError(name, describe_value(value), allowed)
-    if array.dtype.itemsize <= _DOUBLE:
+    if array.dtype.itemsize <= 8:
         return array.astype(np.float64, copy=False)
     # long doubles beyond the doubles become infinite, which is refused
     with np.errstate(over="ignore"):
@@ -202,9 +204,9 @@ def _first_wrong(array: Floats, wrong: Booleans) -> str:
     if array.size == 1:
         return str(array.item())
     first = tuple(map(int, np.argwhere(wrong)[0]))
-    index = f"at index {first[0] if array.ndim == 1 else first}"
-    more = int(np.count_nonzero(wrong)) - 1
-    return f"{array[first]} {index}" + (f", and {more} more" if more else "")
+    found = f"{array[first]} at index {first[0] if array.ndim == 1 else first}"
+    more = np.count_nonzero(wrong) - 1
+    return f"{found}, and {more} more" if more else found
 
 
 def extent(array: Floats) -> tuple[float, float]:
@@ -212,8 +214,6 @@ def extent(array: Floats) -> tuple[float, float]:
 
     array: float64, of any shape; an empty one raises ValueError.
     """
-    if array.ndim == 0:
-        return float(array), float(array)
     return float(array.min()), float(array.max())
 
 
@@ -244,7 +244,7 @@ def check_number(name: str, value: ArrayLike, **bounds: Any) -> float:
     return number
 
 
-def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
+def broadcast_shape(**arrays: Any) -> Shape:
     """Return the common shape of arrays, by numpy's rule of broadcasting.
 
     arrays: arrays of numpy and numbers by the name that an error states; what has no axes fits
@@ -252,13 +252,13 @@ def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     Returns the shape, a tuple of ints; () if no array has axes, or none is given.
     Raises ParameterError if they do not broadcast; the message lists the shapes.
     """
-    # a set of the different shapes: mostly one, which needs no call of numpy
-    shapes = {getattr(array, "shape", ()) for array in arrays.values()} - {()}
+    shapes = {name: getattr(array, "shape", ()) for name, array in arrays.items()}
+    different = {(), *shapes.values()}
     try:
-        return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
+        # numbers alone need no call of numpy
+        return np.broadcast_shapes(*different) if len(different) > 1 else ()
     except ValueError:
-        each = {name: getattr(array, "shape", ()) for name, array in arrays.items()}
-        found = ", ".join(f"{name} {shape}" for name, shape in each.items() if shape)
+        found = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
         allowed = "equal, or broadcast as in numpy, for example (3, 1) with (4,)"
         raise ParameterError(
             "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"
@@ -314,8 +314,6 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     ParameterError
         If it is not a whole number, or out of range.
     """
-    if type(value) is int and low <= value <= high:
-        return value
     # a bool is an int of Python, and a duration an integer of numpy
     if isinstance(value, bool | np.timedelta64) or not (
         isinstance(value, int | np.integer) and low <= value <= high
@@ -375,12 +373,8 @@ def check_bool(name: str, value: Any) -> bool:
 
 # --- Work on arrays by blocks ---
 
-#: Blocks submitted for each worker and not yet awaited.  A future takes a kilobyte, so that not all
-#: are submitted.
-_BLOCKS_IN_QUEUE = 8
 
-
-def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
+def block_reader(array: Floats, shape: Shape) -> Callable[[int, int], Floats]:
     """Return a function that reads blocks of a broadcast array, so that the whole of it is never in
     memory.
 
@@ -424,7 +418,7 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     return read_block
 
 
-def broadcast_rows(arrays: Collection[Any], shape: tuple[int, ...]) -> Floats:
+def broadcast_rows(arrays: Collection[Any], shape: Shape) -> Floats:
     """Return arrays and numbers as the rows of one array, each broadcast to a shape and flattened.
 
     arrays: doubles, each a number or an array that broadcasts to ``shape``.
@@ -432,12 +426,12 @@ def broadcast_rows(arrays: Collection[Any], shape: tuple[int, ...]) -> Floats:
     Returns a new array (rows, states), in the order of ``arrays``.
     """
     rows = np.empty((len(arrays), *(shape or (1,))))
-    for row, array in zip(rows, arrays, strict=True):
+    for row, array in zip(rows, arrays):
         row[...] = array
     return rows.reshape(len(arrays), -1)
 
 
-def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
+def broadcast_vector(array: NDArray, shape: Shape) -> NDArray:
     """Return an array, broadcast to a shape and flattened, as a contiguous read-only vector.
 
     array: numbers that broadcast to ``shape``.
@@ -561,34 +555,18 @@ def run_blocks(
         from tqdm import tqdm
 
         edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
+    waiting: deque[Future[None]] = deque()
     # with a bar and no blocks the pool still needs one worker
     with ThreadPoolExecutor(max(workers, 1)) as pool:
-        _submit_all(pool, work, edges, _BLOCKS_IN_QUEUE * workers)
-
-
-def _submit_all(
-    pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int
-) -> None:
-    """Run all blocks on a pool, await them in order, and return when all are done.
-
-    If a block fails, its exception is raised when it is awaited; of several that of the first
-    block.  Then no further blocks are submitted, those that have not begun are cancelled, and those
-    that run are not awaited.
-
-    pool: :class:`concurrent.futures.Executor`, of threads.
-    work: function (start, stop) -> None.
-    edges: (start, stop) of each block, an iterable that is consumed as blocks are submitted.
-    most: largest number of blocks that are submitted and not yet awaited, >= 1; it bounds the
-    memory of the futures.
-    """
-    waiting: deque[Future[None]] = deque()
-    try:
-        for edge in edges:
-            waiting.append(pool.submit(work, *edge))
-            if len(waiting) > most:
+        try:
+            for edge in edges:
+                waiting.append(pool.submit(work, *edge))
+                # a future takes a kilobyte, so that not all are submitted
+                if len(waiting) > 8 * workers:
+                    waiting.popleft().result()
+            while waiting:
                 waiting.popleft().result()
-        while waiting:
-            waiting.popleft().result()
-    finally:
-        for future in waiting:
-            future.cancel()
+        finally:
+            # after an exception blocks that have not begun are cancelled
+            for future in waiting:
+                future.cancel()

@@ -12,7 +12,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arrays import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
+from .arrays import (
+    ArrayLike,
+    Named,
+    Names,
+    Shape,
+    broadcast_shape,
+    check_array,
+    divide_by_unit,
+    read_only,
+)
 from .errors import ParameterError, described_error, shape_error
 from .quantities import UNITLESS_TYPES, HasUnits, Scale, convert, has_no_unit, split_unit, to_unit
 
@@ -60,8 +69,8 @@ class Schedule:
         row times are >= 0, do not decrease, and no time occurs more than twice.  Raises
         ParameterError where that does not hold, or a field is not numeric or not finite.
         """
-        for name, low in (("times", 0.0), ("values", -np.inf)):
-            _check_field(self, name, low)
+        _check_field(self, "times", 0.0)
+        _check_field(self, "values")
         times = self.times
         values = self.values
         fits = {np.ndim(times), np.ndim(values)} <= {1, 2}
@@ -125,21 +134,21 @@ class Feedback:
         axes.
         """
         if not (callable(self.value) or isinstance(self.value, Schedule)):
-            _check_field(self, "value", -np.inf)
+            _check_field(self, "value")
         for name in ("V", "omega"):
-            _check_field(self, name, -np.inf)
+            _check_field(self, name)
             if np.ndim(gain := getattr(self, name)) > 1:
                 raise shape_error(
                     name, np.shape(gain), "one gain, or an array (n,) with a gain for each motion"
                 )
 
     @property
-    def shape(self) -> tuple[int, ...]:
+    def shape(self) -> Shape:
         """Common shape of the gains."""
         return np.broadcast_shapes(np.shape(self.V), np.shape(self.omega))
 
 
-def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
+def _check_field(load: Schedule | Feedback, name: str, low: float = -np.inf) -> None:
     """Replace a field by its checked numbers, and keep the unit that it was given in.
 
     load: :class:`Schedule` or :class:`Feedback`, changed in place although it is frozen: its field
@@ -217,17 +226,18 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
     """
     try:
         parameters = signature(function)
+        parameters.bind(0.0)
     except ValueError:  # compiled code may have no signature
         return
-    try:
-        parameters.bind(0.0)
     except TypeError:
-        sentence = (
+        raise ParameterError(
+            name,
+            function,
+            "a function of t",
             f"{name} must be a function of t alone, but this function has the parameters "
             f"{parameters}: for feedback of the speeds give vr.Feedback; with another controller "
-            "call vr.law in an integrator of your own"
-        )
-        raise ParameterError(name, function, "a function of t", sentence) from None
+            "call vr.law in an integrator of your own",
+        ) from None
 
 
 def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
@@ -318,7 +328,7 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     if isinstance(value, Schedule):
         values = check_array(f"values of {name}", value.values, low=low)
         # the last axis of the values is that of the corners, and cylinders are the rows
-        units = unit[:, np.newaxis] if np.ndim(unit) else unit
+        units = unit[:, None] if np.ndim(unit) else unit
         return Schedule(value.times / scale["t"], divide_by_unit(name, values, units))
     quotient = divide_by_unit(name, check_array(name, value, unit=scale, low=low), unit)
     return quotient if quotient.ndim else float(quotient)
@@ -337,12 +347,12 @@ class Labels(NamedTuple):
     too.
     """
 
-    shape: tuple[int, ...]
+    shape: Shape
     like: Any
-    dims: tuple[str, ...]
-    coords: dict[str, Any]
+    dims: Names
+    coords: Named
 
-    def axes_in_front(self, shape: tuple[int, ...], after: int = 0) -> int:
+    def axes_in_front(self, shape: Shape, after: int = 0) -> int:
         """Return how many axes an array of results has before those of the arguments.
 
         There are such axes where the parameters of the roller are arrays of more axes.
@@ -409,9 +419,7 @@ class Labels(NamedTuple):
         own = xr.DataArray(np.resize(values, self.shape), dims=self.dims)
         return not xr.DataArray(label, dims=dims).broadcast_equals(own)
 
-    def axes_beside(
-        self, names: Iterable[str], *dims: str
-    ) -> tuple[tuple[str, ...], dict[str, Any]]:
+    def axes_beside(self, names: Iterable[str], *dims: str) -> tuple[Names, Named]:
         """Return axes and coordinates for a dataset; what has the name of a variable there is
         called given_NAME.
 
@@ -425,7 +433,7 @@ class Labels(NamedTuple):
         new = {
             name: f"given_{name}" if name in names else name for name in (*self.dims, *self.coords)
         }
-        new |= zip(self.dims, dims, strict=False)  # without new names nothing changes
+        new |= zip(self.dims, dims)  # without new names nothing changes
         coords = {
             new[name]: (tuple(new[dim] for dim in own), values, {"long_name": name})
             for name, (own, values) in self.coords.items()
@@ -433,16 +441,14 @@ class Labels(NamedTuple):
         return tuple(new[dim] for dim in self.dims), coords
 
 
-def state_axes(count: int) -> tuple[str, ...]:
+def state_axes(count: int) -> Names:
     """Return names of ``count`` axes without labels: "state" of a single one, else "state_0",
     "state_1" and so on.
     """
     return ("state",) if count == 1 else tuple(f"state_{n}" for n in range(count))
 
 
-def dataset_axes(
-    labels: Labels | None, shape: tuple[int, ...], names: Iterable[str]
-) -> tuple[tuple[str, ...], dict[str, Any]]:
+def dataset_axes(labels: Labels | None, shape: Shape, names: Iterable[str]) -> tuple[Names, Named]:
     """Return the axes of a dataset of results, and its coordinates by the labels of the arguments.
 
     labels: labels of the arguments; None: they had none.
@@ -458,7 +464,7 @@ def dataset_axes(
     return axes[:front] + dims, coords
 
 
-def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any], Labels | None]:
+def strip_labels(given: Named, units: HasUnits) -> tuple[Named, Labels | None]:
     """Return the arguments of a call as plain numbers in their units, and their labels.
 
     Parameters
@@ -528,7 +534,7 @@ def _loaded_type(module: str, name: str) -> Any:
     return getattr(sys.modules.get(module), name, ())
 
 
-def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
+def _from_xarray(arrays: Named) -> tuple[Named, Labels]:
     """Broadcast arrays of xarray by the names of their axes, and separate their values from their
     labels.
 
@@ -542,9 +548,7 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     import xarray as xr
 
     try:
-        whole = dict(
-            zip(arrays, xr.broadcast(*xr.align(*arrays.values(), join="exact")), strict=True)
-        )
+        whole = xr.broadcast(*xr.align(*arrays.values(), join="exact"))
     except ValueError as error:
         names = " and ".join(arrays)
         raise ParameterError(
@@ -553,24 +557,20 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
             "aligned",
             f"{names} have different coordinates: align them first, by xarray.align",
         ) from error
-    like = next(iter(whole.values())).drop_attrs()
+    like = whole[0].drop_attrs()
     # from the last array to the first, whose coordinates take the place of later ones
-    others = {
-        name: each for array in reversed(whole.values()) for name, each in array.coords.items()
-    }
-    like = like.assign_coords(
-        {name: each for name, each in others.items() if name not in like.coords}
-    )
+    others = {name: each for array in reversed(whole) for name, each in array.coords.items()}
+    like = like.assign_coords({name: others[name] for name in others if name not in like.coords})
     coords = {
         str(name): (tuple(map(str, each.dims)), each.values)
         for name, each in like.coords.items()
         if each.dims
     }
     labels = Labels(like.shape, like, tuple(map(str, like.dims)), coords)
-    return {name: array.values for name, array in whole.items()}, labels
+    return {name: array.values for name, array in zip(arrays, whole)}, labels
 
 
-def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
+def _from_pandas(series: Named) -> tuple[Named, Labels]:
     """Separate the values of series of pandas from their labels.
 
     series: name of an argument -> series of pandas; at least one.
@@ -585,13 +585,16 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     index = first.index
     if not all(index.equals(other.index) for other in others):
         names = " and ".join(series)
-        sentence = f"{names} have different indexes: align them first, by reindex_like of pandas"
-        raise ParameterError(names, "unlike indices", "of one index", sentence)
+        raise ParameterError(
+            names,
+            "unlike indices",
+            "of one index",
+            f"{names} have different indexes: align them first, by reindex_like of pandas",
+        )
     # the levels of the index as columns; the last column has the values, with a name that no
     # level has, since reset_index refuses a second column of one name
     levels = first.rename("").reset_index().iloc[:, :-1]
     dim = str(levels.columns[0]) if index.nlevels == 1 else "state"
     coords = {str(name): ((dim,), values.to_numpy()) for name, values in levels.items()}
-    return {name: each.to_numpy() for name, each in series.items()}, Labels(
-        first.shape, index, (dim,), coords
-    )
+    values = {name: each.to_numpy() for name, each in series.items()}
+    return values, Labels(first.shape, index, (dim,), coords)

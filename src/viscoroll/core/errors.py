@@ -135,11 +135,11 @@ def digits_beside(value: Any, *others: Any) -> str:
     )
 
 
-def unit_error(name: str, unit: str, target: str) -> ParameterError:
+def unit_error(name: str, found: str, target: str) -> ParameterError:
     """Return the ParameterError, not raised, of an argument in a unit that cannot be converted.
 
     name: name of the argument.
-    unit: unit that was found, perhaps with a remark; 99 characters are quoted.
+    found: verb and unit that was found, as "is in km".
     target: unit of the argument, "1" of a dimensionless number.
     """
     allowed = (
@@ -147,8 +147,7 @@ def unit_error(name: str, unit: str, target: str) -> ParameterError:
         if target == "1"
         else f"in {target}, or in another unit of that dimension"
     )
-    found = f"in {unit:.99}"
-    return ParameterError(name, found, allowed, f"{name} is {found}: must be {allowed}")
+    return described_error(name, found, allowed)
 
 
 def described_error(name: str, found: str, allowed: str) -> ParameterError:
@@ -399,17 +398,16 @@ _MESSAGES = (
 )
 
 
-def caller_level() -> int:
-    """Return the number of frames from the caller up to the first one outside this package, both
-    counted, >= 2.
+def warn_of_model(text: str) -> None:
+    """Give a :class:`ModelWarning` at the line of the user's program.
 
-    It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.
-    Frames of the module dataclasses, whose ``replace`` calls back, are passed over too.  If all
-    frames are those of this package, the outermost one counts.
+    That is the line of the first frame outside this package.  Frames of the module dataclasses,
+    whose ``replace`` calls back, are passed over too.  If all frames are those of this package, the
+    outermost one counts.
     """
-    # frame 0 is this function, 1 its caller, whose own line is stacklevel 1; 2 is what called it
+    # frame 0 is this function, whose own line is stacklevel 1; 1 is what called it
     level = 2
-    frame = sys._getframe(2)
+    frame = sys._getframe(1)
     while frame.f_back is not None:
         name = frame.f_globals.get("__name__", "")
         # with the point "viscoroll" itself and its modules fit, but not "viscoroll_tools"
@@ -417,12 +415,7 @@ def caller_level() -> int:
             break
         level += 1
         frame = frame.f_back
-    return level
-
-
-def warn_of_model(text: str) -> None:
-    """Give a :class:`ModelWarning` at the line of the user's program (:func:`caller_level`)."""
-    warnings.warn(text, ModelWarning, stacklevel=caller_level())
+    warnings.warn(text, ModelWarning, stacklevel=level)
 
 
 # --- Imports of packages that only some functions need ---

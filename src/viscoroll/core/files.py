@@ -21,7 +21,7 @@ from dataclasses import is_dataclass
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
 
 from ..kernels.numerics.cache_folder import read_private, write_private
 from .errors import FileError, ParameterError, describe_value, suggestion
@@ -35,14 +35,14 @@ else:
     DataArray = DataFrame = Dataset = Figure = Any
 
 #: Path of a file, as callers give it.
-FilePath: TypeAlias = str | PathLike[str]
+FilePath = str | PathLike[str]
 
 # --- Files that are written whole, and read if they are as they were written ---
 
 #: Text of a seal before its hash.
 _SEAL = b"\nSHA-256 of all before, by viscoroll: "
-#: Bytes of a seal: its text, the hash in hexadecimal digits, a line feed.
-_SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
+#: Bytes of a seal: its text, the hash in 64 hexadecimal digits, a line feed.
+_SEAL_SIZE = len(_SEAL) + 65
 
 
 def as_path(path: Any) -> Path:
@@ -160,14 +160,17 @@ def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
     Returns None if there is no file that can be read, also if others may write to it or to a folder
     above it, or if one belongs to another user; None with a RuntimeWarning if it is damaged.
     """
+    import numpy as np
+
     try:
         content = read_private(path)
     except OSError:
         return None
-    try:
-        with _sealed_arrays(content) as data:
+    found = None
+    if seal_matches(content):
+        with suppress(Exception), np.load(io.BytesIO(content)) as data:
             found = read(data)
-    except Exception:
+    if found is None:
         warnings.warn(
             f"{path}: {damaged.format('not as it was written')}", RuntimeWarning, stacklevel=3
         )
@@ -175,19 +178,6 @@ def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
     with suppress(OSError):  # a folder that is read-only
         path.touch()
     return found
-
-
-def _sealed_arrays(content: bytes) -> Any:
-    """Return the arrays of a sealed file by name, as a context manager.
-
-    content: all bytes of the file.
-    Raises ValueError if the seal is missing, or is not that of the bytes.
-    """
-    import numpy as np
-
-    if not seal_matches(content):
-        raise ValueError("its bytes differ from the checksum (SHA-256) at their end")
-    return np.load(io.BytesIO(content))
 
 
 def save_kept(path: Path, most: int, arrays: Mapping[str, Any]) -> None:
@@ -204,8 +194,7 @@ def save_kept(path: Path, most: int, arrays: Mapping[str, Any]) -> None:
     np.savez(content, **arrays)
     with suppress(OSError):
         write_private(path, seal(content.getvalue()))
-        files = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
-        for file in files[:-most]:
+        for file in sorted(path.parent.glob("*.npz"), key=os.path.getmtime)[:-most]:
             file.unlink()
 
 
@@ -287,6 +276,13 @@ def fix_texts(dataset: Dataset) -> Dataset:
     return fixed
 
 
+def names_ending(dataset: Dataset, end: str) -> list[str]:
+    """Return the names of the variables of a ``dataset`` that end with ``end``, without this end,
+    in the order of the dataset.
+    """
+    return [name.removesuffix(end) for name in map(str, dataset) if name.endswith(end)]
+
+
 def write_dataset(
     dataset: Dataset,
     path: FilePath,
@@ -322,31 +318,14 @@ def write_dataset(
     }
     # The file is composed in memory, because HDF5 2.0 crashes the process on a full disk
     # (tests/test_files.py).
-    content = bytes(
-        fix_texts(dataset).to_netcdf(
-            engine="h5netcdf", format="NETCDF4", encoding=encoding or default
-        )
-    )
+    content = bytes(fix_texts(dataset).to_netcdf(engine="h5netcdf", encoding=encoding or default))
     write_bytes(path, seal(content) if sealed else content)
 
 
 # --- Sections of TOML files ---
 
 T = TypeVar("T")
-#: Line with the header of a section.
-_HEADER = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]")
-#: Number with a decimal comma as the value of a key.
-_DECIMAL_COMMA = re.compile(r"=\s*([-+]?[\d.]+,\d+)")
-#: List in one line.
-_LIST = re.compile(r"\[[^\]]*\]")
-#: Keys and indices in the path of a msgspec error, as ".prony.E[2]".
-_KEYS = re.compile(r"\w+")
-#: Message of msgspec for a wrong type.
-_WRONG_TYPE = re.compile(r"Expected `([^`]*)`, got `[^`]*`")
-#: Message of msgspec for a number out of range.
-_OUT_OF_RANGE = re.compile(r"Expected `[^`]*` (.*)")
-#: Message of msgspec for a missing key.
-_MISSING = re.compile(r"Object missing required field `(.*)`")
+
 #: Type as msgspec names it -> words.
 _TYPE_NAMES = {
     "float": "a number without a unit",
@@ -377,11 +356,9 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         raise FileError(path, problem) from error
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not in UTF-8 (byte {error.start}): save it in UTF-8") from error
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # a ValueError of tomllib, or of Python for a number of 5000 digits
-        advice = _advise_on_comma(Path(path), str(error))
+    # a ValueError of tomllib, or of Python for a number of 5000 digits
+    except (ValueError, RecursionError) as error:
+        advice = _advise_on_comma(text, str(error))
         raise FileError(path, f"is not TOML: {error}{advice}") from error
     return content
 
@@ -397,17 +374,18 @@ def _finite(path: FilePath, text: str) -> float:
     return number
 
 
-def _advise_on_comma(path: Path, problem: str) -> str:
+def _advise_on_comma(text: str, problem: str) -> str:
     """Return advice on a decimal comma in a file that is not TOML, to be appended to the error.
 
-    path: path of the file, which is read again.
+    text: content of the file.
     problem: message of tomllib, which names the line.
     Returns ": " and words if the value of a key in that line, outside of lists, has a decimal
     comma, else "".
     """
     if number := re.search(r"line (\d+)", problem):
-        line = path.read_text(encoding="utf-8-sig").split("\n")[int(number[1]) - 1]
-        if comma := _DECIMAL_COMMA.search(_LIST.sub("", line)):
+        line = text.split("\n")[int(number[1]) - 1]
+        without_lists = re.sub(r"\[[^\]]*\]", "", line)
+        if comma := re.search(r"=\s*([-+]?[\d.]+,\d+)", without_lists):
             return f"; {comma[1]} must have a decimal point"
     return ""
 
@@ -433,34 +411,31 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
         return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
         problem, _, location = str(error).partition(" - at `$")
-        keys = _KEYS.findall(location)
+        keys = re.findall(r"\w+", location)  # of a path as ".prony.E[2]"
         value = content
         for key in keys:
             value = value[int(key)] if isinstance(value, list) else value[key]
         # without the indices of lists, which have no line of their own
         words = [key for key in keys if not key.isdecimal()]
-        if missing := _MISSING.fullmatch(problem):
+        if missing := re.fullmatch("Object missing required field `(.*)`", problem):
             raise section_error(
                 path, ".".join((name, *words)), "", f"needs {missing[1]}"
             ) from error
+        # every other fault is that of a key, since the section is a table
         text = repr(value)
-        found = f"{words[-1]} = {text if len(text) <= 40 else f'{text:.37}...'}" if words else ""
-        if expected := _WRONG_TYPE.fullmatch(problem):
-            types = " or ".join(
-                _TYPE_NAMES[name] for name in expected[1].split(" | ") if name != "null"
-            )
-            problem = f"{'.'.join(words)} = {value!r:.40}: must be {types}"
-        elif bounds := _OUT_OF_RANGE.fullmatch(problem):
+        found = f"{words[-1]} = {text if len(text) <= 40 else f'{text:.37}...'}"
+        if expected := re.fullmatch("Expected `([^`]*)`, got `[^`]*`", problem):
+            types = (_TYPE_NAMES[name] for name in expected[1].split(" | ") if name != "null")
+            problem = f"{'.'.join(words)} = {value!r:.40}: must be {' or '.join(types)}"
+        elif bounds := re.fullmatch("Expected `[^`]*` (.*)", problem):
             problem = f"{found}: must be {bounds[1]}"
-        elif words and (choices := _list_choices(kind, words)):
+        elif choices := _list_choices(kind, words):
             problem = f"{found}: must be one of {choices}"
         elif problem == "Number out of range":
             problem = f"{found}: must be at most 1.8e308, the largest number that is allowed"
-        elif words and not isinstance(value, dict):
+        elif not isinstance(value, dict):
             problem = f"{found}: {problem}"
-        raise section_error(
-            path, ".".join((name, *words[:-1])), words[-1] if words else "", problem
-        ) from error
+        raise section_error(path, ".".join((name, *words[:-1])), words[-1], problem) from error
 
 
 def _list_choices(kind: Any, keys: list[str]) -> str:
@@ -472,12 +447,12 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
     not have gives "".
     """
     for key in keys:
-        hints = map(get_type_hints, _sections_in(kind))
-        kind = next((each[key] for each in hints if key in each), None)
+        kinds = map(get_type_hints, _sections_in(kind))
+        kind = next((each[key] for each in kinds if key in each), None)
     return ", ".join(repr(each) for each in get_args(kind) if isinstance(each, str))
 
 
-def _sections_in(kind: Any) -> list[Any]:
+def _sections_in(kind: Any) -> list:
     """Return those of a type, or of the members of a union as Section | None, that have keys."""
     return [
         each
@@ -520,10 +495,8 @@ def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> No
     known = list(allowed)
     for key in content:
         if key not in known:
-            problem = (
-                f"unknown key {key!r}: must be one of {', '.join(known)}{suggestion(key, known)}"
-            )
-            raise section_error(path, name, key, problem)
+            words = f"{', '.join(known)}{suggestion(key, known)}"
+            raise section_error(path, name, key, f"unknown key {key!r}: must be one of {words}")
 
 
 @contextmanager
@@ -556,11 +529,12 @@ def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
     The message is "PATH: line N: [NAME] PROBLEM", without the line if neither key nor section is
     found or the file cannot be read, and without [NAME] at the top level.
     """
-    line = None
+    if name:
+        problem = f"[{name}] {problem}"
     with suppress(OSError, UnicodeDecodeError):
-        line = find_line(Path(path).read_text(encoding="utf-8-sig"), name, key)
-    prefix = "" if line is None else f"line {line}: "
-    return FileError(path, f"{prefix}[{name}] {problem}" if name else f"{prefix}{problem}")
+        if line := find_line(Path(path).read_text(encoding="utf-8-sig"), name, key):
+            problem = f"line {line}: {problem}"
+    return FileError(path, problem)
 
 
 def find_line(text: str, name: str, key: str) -> int | None:
@@ -576,14 +550,14 @@ def find_line(text: str, name: str, key: str) -> int | None:
     as a key of "material"; else None.
     """
     full = f"{name}.{key}" if name else key
-    plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")
-    dotted = re.compile(rf"\s*{re.escape(full)}\s*[=.]")
+    plain = rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]"
+    dotted = rf"\s*{re.escape(full)}\s*[=.]"
     header = ""
     header_line = None
     tables = []
     for number, line in enumerate(text.splitlines(), 1):
-        if found := _HEADER.match(line):
-            header = found.group(1)
+        if found := re.match(r"\s*\[+\s*([^\]]*?)\s*\]", line):
+            header = found[1]
             if line.lstrip().startswith("[["):
                 tables.append(header)
                 # as errors name them: the first [[data]] has no number
@@ -592,7 +566,7 @@ def find_line(text: str, name: str, key: str) -> int | None:
                 return number
             if header == name:
                 header_line = number
-        elif (header == name and plain.match(line)) or (header == "" and dotted.match(line)):
+        elif (header == name and re.match(plain, line)) or (not header and re.match(dotted, line)):
             return number
     if header_line is None and "." in name:  # an inline table stands on the line of its name
         return find_line(text, *name.rsplit(".", 1))

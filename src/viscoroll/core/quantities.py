@@ -20,7 +20,7 @@ from decimal import Decimal
 from functools import lru_cache
 from importlib.resources import files
 from numbers import Real
-from typing import Any, NamedTuple, Protocol, TypeAlias, TypeGuard
+from typing import Any, NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 
@@ -147,7 +147,7 @@ class HasUnits(Protocol):
 
 
 #: Unit of an argument, or an object that gives it by the name of the argument.
-Units: TypeAlias = str | HasUnits
+Units = str | HasUnits
 
 #: Scale of a scene: every unit is 1.
 DIMENSIONLESS = Scale(si=False)
@@ -237,8 +237,7 @@ def describe_quantity(name: str, si: bool = False) -> str:
 
 #: Character of a unit that pint does not read -> spelling that it reads.
 _SPELLINGS = str.maketrans("²³⁻¹·⋅µμ", "23-1  uu") | {ord("°"): "deg"}
-#: Symbol of a unit and its power: "m-1", "mm^2", "s**-2".
-_POWER = re.compile(r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
+
 #: Texts for the unit of a dimensionless number.
 _DIMENSIONLESS = ("", "1", "-", "dimensionless")
 #: Units of angles, turns and cycles, and of these per time.
@@ -316,23 +315,16 @@ def pint_spelling(unit: str) -> str:
 
     unit: unit as files and people write it, as "N/mm²"; of "" the result is "1".
     """
-    return _POWER.sub(r"\1**\2", unit.strip().translate(_SPELLINGS)) or "1"
+    power = r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?"  # as "m-1", "mm^2", "s**-2"
+    return re.sub(power, r"\1**\2", unit.strip().translate(_SPELLINGS)) or "1"
 
 
 # --- Inputs with units ---
 
 #: Types without a unit and without labels.
 UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
-#: Kinds of numpy's arrays without a unit: truth values, numbers, texts, dates.
-_UNITLESS_KINDS = frozenset("biufcUSM")
-#: Types of the elements of lists without a unit.
-_NUMBER_TYPES = frozenset((float, int))
 #: Hertz in a unit, which has a clear meaning for an angular velocity alone: 2 pi rad/s.
-_HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE)
-#: A unit in brackets at the end of the title of a column.
-_TITLE_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
-#: Labels of a series that are searched for the units of columns: a row of a table has fewer.
-_MOST_COLUMNS = 100
+_HERTZ = r"(?i)(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz"
 #: The only unit of arguments whose zero differs from that of other units of its dimension.
 _TEMPERATURE = "degC"
 
@@ -348,9 +340,9 @@ def has_no_unit(value: Any) -> bool:
     """
     kind = type(value)
     if kind is np.ndarray:
-        return value.dtype.kind in _UNITLESS_KINDS
+        return value.dtype.kind in "biufcUSM"  # truth values, numbers, texts, dates
     return kind in UNITLESS_TYPES or (
-        kind in (list, tuple) and _NUMBER_TYPES.issuperset(map(type, value))
+        kind in (list, tuple) and {float, int}.issuperset(map(type, value))
     )
 
 
@@ -367,15 +359,12 @@ def to_unit(name: str, value: Any, target: str) -> Any:
     xarray and pandas.
     Raises ParameterError as :func:`split_unit` and :func:`convert` do.
     """
-    if has_no_unit(value):
-        return value
     if _is_quantity(value) and not hasattr(value, "units"):
         try:
             return value.to(pint_spelling(target)).magnitude
         except Exception as error:  # libraries raise errors of their own
             found = f"cannot be converted ({' '.join(str(error).split()):.80})"
-            allowed = "a number without dimension" if target == "1" else f"in {target}"
-            raise described_error(name, found, allowed) from error
+            raise unit_error(name, found, target) from error
     numbers, unit = split_unit(name, value)
     return numbers if unit is None else convert(name, numbers, unit, target)
 
@@ -440,17 +429,15 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
     if unit.strip() in _DIMENSIONLESS and target != "rad":
-        raise unit_error(name, "units of 1, without dimension", target)
-    cycles = target != "rad s-1" and _HERTZ.search(unit)
-    if cycles or (target == _TEMPERATURE and "delta" in unit):
-        raise unit_error(name, unit, target)
+        raise unit_error(name, "is in units of 1, without dimension", target)
     try:
         factor, offset = conversion_factor(unit, target)
     except ParameterError as error:
-        raise unit_error(name, str(error.value), target) from None
+        raise unit_error(name, f"is in {error.value:.99}", target) from None
     # where no temperature is wanted, an offset makes the meaning unclear: 20 degC or 20 K more
-    if offset and target != _TEMPERATURE:
-        raise unit_error(name, unit, target)
+    unclear = "delta" in unit if target == _TEMPERATURE else offset
+    if unclear or (target != "rad s-1" and re.search(_HERTZ, unit)):
+        raise unit_error(name, f"is in {unit:.99}", target)
     if isinstance(value, list):
         return [convert(name, element, unit, target) for element in value]
     number = _as_floats(name, value)
@@ -488,7 +475,7 @@ def _is_quantity(value: Any) -> bool:
     return hasattr(value, "magnitude") and hasattr(value, "to")
 
 
-def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
+def _split_elements(name: str, values: Any) -> tuple[list, str | None]:
     """Split the unit from the elements of a list, all converted to the unit of the first.
 
     name: name of the argument, for errors.
@@ -532,7 +519,8 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     """
     is_xarray = hasattr(value, "dims")
     index = None if is_xarray else getattr(value, "index", None)
-    if index is not None and any(map(_title_unit, index[:_MOST_COLUMNS])):
+    # a row of a table has fewer columns than are searched
+    if index is not None and any(map(_title_unit, index[:100])):
         raise described_error(
             name, "is a row of a table, with units in its index", "a column of it, or a number"
         )
@@ -565,11 +553,11 @@ def _title_unit(title: Any) -> str | None:
     Returns None too if there are no brackets, or if they contain a unit of 1 or a text that pint
     does not know.
     """
-    found = _TITLE_UNIT.search(title) if isinstance(title, str) else None
-    if found is None or found[1].strip() in _DIMENSIONLESS:
-        return None
+    found = re.search(r"\[([^\[\]]+)\]\s*$", title) if isinstance(title, str) else None
     # text in brackets may be no unit, as "V [fast]"
-    return found[1] if is_unit(found[1]) else None
+    if found and found[1].strip() not in _DIMENSIONLESS and is_unit(found[1]):
+        return found[1]
+    return None
 
 
 def _to_seconds(name: str, value: Any) -> Any:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arrays import NDArray
+from .arrays import Named, Names, NDArray, Shape
 from .drives_and_labels import Labels, dataset_axes, state_axes
 from .files import DataFrame, Dataset, Figure, FilePath
 from .quantities import attributes
@@ -19,8 +19,6 @@ PAPER = (
     "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic "
     "half-space, Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
 )
-#: Rows of a summary in a notebook: more do not fit a screen.
-_MAX_ROWS = 40
 
 
 class SummaryRow(NamedTuple):
@@ -194,12 +192,12 @@ def as_html(title: str, rows: list[SummaryRow]) -> str:
         "<tr>"
         + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row)
         + "</tr>"
-        for row in rows[:_MAX_ROWS]
+        for row in rows[:40]  # more do not fit a screen
     )
     return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
 
 
-def unit_of(attributes: Mapping[Any, Any]) -> str:
+def unit_of(attributes: Mapping) -> str:
     """Return the unit in the ``attributes`` of a variable, "" of a dimensionless one."""
     unit = str(attributes.get("units", "1"))
     return "" if unit == "1" else unit
@@ -269,15 +267,15 @@ class Values(Result):
 
     def __init__(
         self,
-        values: dict[str, Any],
-        given: dict[str, Any] | None = None,
-        own: dict[str, dict[str, str]] | None = None,
+        values: Named,
+        given: Named | None = None,
+        own: dict[str, Named] | None = None,
         title: str = "Contact",
         *,
         si: bool = False,
         labels: Labels | None = None,
-        about: dict[str, Any] | None = None,
-        further: tuple[str, ...] = (),
+        about: Named | None = None,
+        further: Names = (),
     ) -> None:
         """Keep the fields of a result, with the arguments that tables and figures need as axes.
 
@@ -294,11 +292,9 @@ class Values(Result):
         further: names of the axes after those of the labels, each that of an argument along it.
         """
         self._about = about or {}
-        self._values = (
-            values
-            if labels is None
-            else {name: labels.apply(name, each, *further) for name, each in values.items()}
-        )
+        if labels is not None:
+            values = {name: labels.apply(name, each, *further) for name, each in values.items()}
+        self._values = values
         self._given = given or {}
         self._own = own or {}
         self._labels = labels
@@ -316,18 +312,15 @@ class Values(Result):
         """
         if name.startswith("_"):
             raise AttributeError(name)
-        try:
+        if name in self._values:
             return self._values[name]
-        except KeyError:
-            names = ", ".join(self._values)
-            raise AttributeError(
-                f"{name!r} was not computed; this result contains {names}"
-            ) from None
+        names = ", ".join(self._values)
+        raise AttributeError(f"{name!r} was not computed; this result contains {names}")
 
     def __dir__(self) -> Iterable[str]:
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Named:
         """Return the results by name.
 
         Returns
@@ -400,7 +393,7 @@ class Values(Result):
         arrays = given | {name: np.asarray(value) for name, value in self._values.items()}
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         own = shape[: len(shape) - len(self._further)]
-        coords: dict[str, Any] = {}
+        coords: Named = {}
         if self._labels and self._labels.axes_in_front(own) >= 0:
             # an argument that is itself the coordinate of its name needs no variable beside it
             alike = {name for name in given if not self._labels.differ(name, given[name])}
@@ -420,16 +413,14 @@ class Values(Result):
                 data[name] = dims if array.ndim else (), whole, self._attributes(name)
         return xr.Dataset(data, coords, attrs={"title": self._title} | self._about)
 
-    def _attributes(self, name: str) -> dict[str, Any]:
+    def _attributes(self, name: str) -> Named:
         """Return the attributes of the result or argument ``name``, as in
         :func:`.scale.attributes`; those that the call gave for it take the place of its own.
         """
         return attributes(name, self._si) | self._own.get(name, {})
 
 
-def _name_axes(
-    given: dict[str, NDArray], shape: tuple[int, ...]
-) -> tuple[tuple[str, ...], dict[str, Any]]:
+def _name_axes(given: dict[str, NDArray], shape: Shape) -> tuple[Names, Named]:
     """Name the axes of a result by the arguments that vary along them.
 
     An axis has the name of an argument if that argument has more than one value along it, has none

@@ -1,9 +1,8 @@
 """Sample files that are installed with the package, for the examples of the documentation."""
 
-from os import PathLike
 from pathlib import Path
 
-from ..core import FileError, as_file_error, as_path, check_choice, write_bytes
+from ..core import FileError, FilePath, as_file_error, as_path, check_choice, write_bytes
 
 __all__ = ["copy_files", "path"]
 
@@ -46,7 +45,7 @@ def path(name: str) -> Path:
     return _FOLDER / name
 
 
-def copy_files(folder: str | PathLike[str]) -> list[Path]:
+def copy_files(folder: FilePath) -> list[Path]:
     """Copy all sample files into a folder, which is made if it does not exist.
 
     Parameters
@@ -69,17 +68,16 @@ def copy_files(folder: str | PathLike[str]) -> list[Path]:
     >>> vr.datasets.copy_files("samples")[0].name
     'dma.csv'
     """
-    content = {as_path(folder) / name: (_FOLDER / name).read_bytes() for name in _names()}
+    contents = {as_path(folder) / name: (_FOLDER / name).read_bytes() for name in _names()}
     with as_file_error(folder, "cannot be written"):
         Path(folder).mkdir(parents=True, exist_ok=True)
-        present = {copy: copy.read_bytes() for copy in content if copy.exists()}
-    for copy, found in present.items():
-        if found != content[copy]:
-            raise FileError(copy, "exists with other content: name another folder")
-    for copy in content:
-        if copy not in present:
-            write_bytes(copy, content[copy])
-    return [*content]
+        for copy, content in contents.items():
+            if copy.exists() and copy.read_bytes() != content:
+                raise FileError(copy, "exists with other content: name another folder")
+    for copy, content in contents.items():
+        if not copy.exists():
+            write_bytes(copy, content)
+    return [*contents]
 
 
 def _names() -> list[str]:

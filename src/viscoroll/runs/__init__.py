@@ -21,21 +21,20 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
     CancelledError,
-    Executor,
     ThreadPoolExecutor,
     as_completed,
     wait,
 )
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
-from os import PathLike
+from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
-import msgspec
 import numpy as np
 
 from ..core import (
     FileError,
+    FilePath,
     Interrupted,
     ParameterError,
     ViscorollError,
@@ -66,14 +65,13 @@ __all__ = [
 
 # --- Evaluation of the blocks of a run ---
 
-#: Tasks submitted for each worker: the one that it works on and the next.
-_TASKS_PER_WORKER = 2
-#: Number of times that dask gives a task to another worker after its worker died.
-_RETRIES = 3
+#: Function that gives the task of a block, by its number, to an executor, and returns its future.
+Submit = Callable[[int], Any]
+
 #: Seconds between lines of progress where there is no terminal.
 LINE_EVERY = 30.0
-#: Address of a dask scheduler: tcp://host:port, or the same with tls.
-_ADDRESS = re.compile(r"(tcp|tls)://([^/:[\]]+|\[[^/[\]]+\]):\d+")
+#: A cluster: "local", or the address of a dask scheduler, tcp://host:port, or the same with tls.
+_CLUSTER = r"local|(tcp|tls)://([^/:[\]]+|\[[^/[\]]+\]):\d+"
 #: Settings of local dask workers.  By default a worker returns each freed array to the system,
 #: which takes as long as a block, and samples itself a hundred times a second.  glibc accepts no
 #: larger second threshold.
@@ -87,7 +85,7 @@ _DASK_SETTINGS = {
 
 def run_ensemble(
     run: Run,
-    path: str | PathLike[str],
+    path: FilePath,
     *,
     cluster: str | None = None,
     threads: int | None = None,
@@ -159,19 +157,14 @@ def run_ensemble(
     store = Store(as_path(path).absolute(), run)
     import_extra("zarr", "runs")
     store.refuse_other()
-    with _executor(store, cluster, threads) as (
-        pool,
-        workers,
-        shared,
-    ):  # an unknown cluster is refused first
+    # an unknown cluster is refused first
+    with _executor(store, cluster, threads) as (submit, workers):
         warn_of_materials(run)
         with locked(store.root), _progress_bar(run, progress) as advance:
             store.start()
             evaluated = 0
             try:
-                for motions in _evaluate_missing(
-                    store, shared, pool=pool, workers=workers, advance=advance
-                ):
+                for motions in _evaluate_missing(store, submit, workers, advance):
                     evaluated += 1
                     advance(motions)
             except KeyboardInterrupt:
@@ -182,7 +175,7 @@ def run_ensemble(
 
 
 def _evaluate_missing(
-    store: Store, shared: Any, pool: Executor, workers: int, advance: Callable[..., Any]
+    store: Store, submit: Submit, workers: int, advance: Callable[..., Any]
 ) -> Iterator[int]:
     """Evaluate the missing blocks on an executor, and report each one that is finished and stored.
 
@@ -190,10 +183,8 @@ def _evaluate_missing(
     finish.
 
     store: :class:`Store`, the store of the run.
-    shared: the same store, or, on a cluster, dask's reference to it (a Future), which workers
-        resolve to the store.
-    pool: :class:`concurrent.futures.Executor`, on which the blocks are evaluated.
-    workers: its number of workers.
+    submit: function (number of a block) -> future of its number of motions.
+    workers: number of workers that evaluate blocks.
     advance: function (number of motions, on_disk=True) of the progress bar, whose result is
         ignored.  It is called here for motions that were on disk before; for those that are yielded
         the caller calls it.
@@ -208,8 +199,8 @@ def _evaluate_missing(
             start, stop = store.run.edges(block)
             advance(start - checked, on_disk=True)
             checked = stop
-            running.add(pool.submit(Store.evaluate, shared, block))
-            if len(running) >= _TASKS_PER_WORKER * workers:
+            running.add(submit(block))
+            if len(running) >= 2 * workers:  # the task that each works on, and the next
                 done, running = wait(running, return_when=FIRST_COMPLETED)
                 yield from (future.result() for future in done)
         advance(store.run.settings.n - checked, on_disk=True)
@@ -228,7 +219,7 @@ def _require_run(run: Any) -> None:
 @contextmanager
 def _executor(
     store: Store, cluster: str | None, threads: int | None
-) -> Iterator[tuple[Executor, int, Any]]:
+) -> Iterator[tuple[Submit, int]]:
     """Open the executor of the tasks; a context manager.
 
     On threads, an error or Ctrl-C in the body of the ``with`` makes running blocks stop before
@@ -240,9 +231,8 @@ def _executor(
         of a dask scheduler, "tcp://host:port" or "tls://host:port".
     threads: number of threads or local processes, >= 1; None: ``$VISCOROLL_THREADS``, else all
         cores available; ignored with an address.
-    Yields (a :class:`concurrent.futures.Executor`; its number of workers, on a cluster that of all
-    their threads, >= 1; the first argument of its tasks: the store itself for threads, else dask's
-    reference to it).
+    Yields (function (number of a block) -> :class:`concurrent.futures.Future` of its evaluation;
+    number of workers, on a cluster that of all their threads, >= 1).
     Raises ParameterError for an unknown cluster or a wrong ``threads``, FileError for a scheduler
     that does not answer, has no workers or is lost while blocks run (on a cluster any OSError of
     the body of the ``with`` counts as that), MissingDependencyError without dask.
@@ -250,16 +240,16 @@ def _executor(
     if cluster is None:
         interrupted = threading.Event()
         workers = thread_count(threads)
-        pool = ThreadPoolExecutor(workers, initializer=cancel_with, initargs=(interrupted,))
+        pool: Any = ThreadPoolExecutor(workers, initializer=cancel_with, initargs=(interrupted,))
         try:
-            yield pool, workers, store
+            yield partial(pool.submit, store.evaluate), workers
         except BaseException:
             interrupted.set()  # running blocks stop
             raise
         finally:
             pool.shutdown(wait=not interrupted.is_set(), cancel_futures=True)
         return
-    if str(cluster) != "local" and not _ADDRESS.fullmatch(str(cluster)):
+    if not re.fullmatch(_CLUSTER, str(cluster)):
         raise ParameterError(
             "cluster", repr(cluster), "'local', or 'tcp://host:port' of a dask scheduler"
         )
@@ -274,18 +264,17 @@ def _executor(
             workers = sum(client.nthreads().values())
             if not workers:
                 raise FileError(cluster, "this cluster has no workers: start some by `dask worker`")
-            # not pure: equal calls are evaluated again, since a block may have been lost on disk
-            with client.get_executor(pure=False, retries=_RETRIES) as pool:
-                yield pool, workers, client.scatter(store, broadcast=True)
+            # not pure: equal calls are evaluated again, since a block may have been lost on disk;
+            # a task is given to other workers three times after its worker died
+            with client.get_executor(pure=False, retries=3) as pool:
+                shared = client.scatter(store, broadcast=True)  # which workers resolve to the store
+                yield partial(pool.submit, Store.evaluate, shared), workers
     except ViscorollError:
         raise
     except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
         text = " ".join((str(error) or type(error).__name__).split())
-        raise FileError(
-            cluster,
-            f"the connection to the cluster was lost ({text:.200}): the same command resumes the "
-            "run",
-        ) from error
+        problem = f"the connection to the cluster was lost ({text:.200})"
+        raise FileError(cluster, f"{problem}: the same command resumes the run") from error
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
@@ -325,11 +314,10 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
     """
     from tqdm import tqdm
 
-    lines = {}
+    settings = {"unit": " motions", "unit_scale": True, "smoothing": 0.05}
     if progress == "lines":
         line = "viscoroll: {n_fmt} of {total_fmt} motions, {percentage:.0f} %, {remaining} left\n"
-        lines = {"delay": LINE_EVERY, "mininterval": LINE_EVERY, "bar_format": line}
-    settings = {"unit": " motions", "unit_scale": True, "smoothing": 0.05} | lines
+        settings |= {"delay": LINE_EVERY, "mininterval": LINE_EVERY, "bar_format": line}
     with tqdm(total=run.settings.n, disable=not progress, **settings) as bar:
 
         def advance(motions: int, on_disk: bool = False) -> None:
@@ -350,9 +338,6 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
 
 #: Motions of the trial by method; they take some tenths of a second.
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
-#: Resident bytes of a process after the trial (libraries, compiled kernels, the trial itself),
-#: measured on Linux; used where the system does not tell.
-_USUAL_RESIDENT = 4e8
 
 
 @dataclass(frozen=True)
@@ -385,12 +370,9 @@ class Estimate:
         covers take unless that is 0; memory in MB; disk space in MB; size of the trial.
         """
         run = self.run
-        laws = (
-            f", {_duration(self.law_seconds)} of it once for the laws of covers"
-            if self.law_seconds
-            else ""
-        )
-        blocks = f"{run.blocks} block" + "s" * (run.blocks != 1)
+        laws = f", {_duration(self.law_seconds)} of it once for the laws of covers"
+        laws *= self.law_seconds > 0.0
+        blocks = f"{run.blocks} block{'s' * (run.blocks != 1)}"
         return (
             f"{run.settings.n} motions in {blocks} of {run.block}, method {run.method}\n"
             f"time    about {_duration(self.seconds)} on {self.workers} workers{laws}\n"
@@ -446,7 +428,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     workers = min(thread_count(threads), run.blocks)
     warn_of_materials(run)
     trial = min(run.block, _TRIAL[run.method])
-    short = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
+    short = run._with_settings(block=trial)
     block_content(short, 0)
     law_seconds = _time_of_laws(short)
     start = time.perf_counter()
@@ -459,15 +441,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     # blocks of the worker that has most of them, rounded up
     motions_a_worker = min(-(-run.blocks // workers) * run.block, run.settings.n)
     seconds = seconds * motions_a_worker / trial + law_seconds
-    return Estimate(
-        run=run,
-        workers=workers,
-        trial=trial,
-        seconds=seconds,
-        memory=memory,
-        stored=stored,
-        law_seconds=law_seconds,
-    )
+    return Estimate(run, workers, trial, seconds, memory, stored, law_seconds)
 
 
 def _time_of_laws(run: Run) -> float:
@@ -500,12 +474,13 @@ def _time_of_laws(run: Run) -> float:
 def _peak_memory() -> float:
     """Return the largest resident memory of this process so far, in bytes, as the system counts it.
 
-    On Windows, where Python does not tell it, :data:`_USUAL_RESIDENT` is returned, 4e8 bytes.
+    On Windows, where Python does not tell it, the result is that of a process after the trial
+    (libraries, compiled kernels, the trial itself) on Linux, 4e8 bytes.
     """
     try:
         import resource
     except ImportError:
-        return _USUAL_RESIDENT
+        return 4e8
     # macOS counts bytes, other systems KiB
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (
         1 if sys.platform == "darwin" else 1024

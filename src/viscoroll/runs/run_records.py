@@ -17,8 +17,6 @@ import hashlib
 import json
 import os
 import zlib
-from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +28,7 @@ from ..core import (
     SYMBOLS,
     Dataset,
     FileError,
+    Named,
     as_file_error,
     import_extra,
     seal,
@@ -40,14 +39,13 @@ from ..core import (
 from ..motion import Summary, column_attributes, provenance
 from ..presets import CylinderSection
 from .runfile import Run
-from .uncertain_inputs import PREFIXES
 
 # --- Records ---
 
+#: Path below the store -> content of a file.
+Files = dict[str, bytes]
 #: Folder of the records in a store.
 RECORDS = "records"
-#: Level of compression of records: the lowest one at which zlib matches lazily.
-_LEVEL = 4
 
 
 class Record(msgspec.Struct):
@@ -73,7 +71,8 @@ def encoded(record: Record) -> bytes:
     """Return the bytes of the file of a ``record``, a :class:`Record`: MessagePack, compressed and
     sealed.
     """
-    return seal(zlib.compress(msgspec.msgpack.encode(record, enc_hook=_encode_array), _LEVEL))
+    content = msgspec.msgpack.encode(record, enc_hook=_encode_array)
+    return seal(zlib.compress(content, 4))  # the lowest level at which zlib matches lazily
 
 
 def read_record(path: Path) -> Record | None:
@@ -94,7 +93,7 @@ def read_record(path: Path) -> Record | None:
         return None
 
 
-def _encode_array(array: np.ndarray) -> list[Any]:
+def _encode_array(array: np.ndarray) -> list:
     """Return [type as numpy writes it, as "<i8"; bytes] of an ``array``, which MessagePack has no
     type for.
     """
@@ -115,20 +114,7 @@ def _decode_array(kind: Any, value: Any) -> np.ndarray:
     return np.frombuffer(content, name)
 
 
-def damaged(root: Path, record: Record) -> list[str]:
-    """Return the files of a record that are missing or differ from their digest; [] if all is well.
-
-    Whether the record itself is that of the run, :func:`.run_store.problems` examines before.
-
-    root: path of the folder of the store.
-    record: the :class:`Record`, whose ``files`` are paths below ``root`` with their SHA-256.
-    Returns paths below ``root``, in the order of the record; a file that cannot be read counts as
-    missing.
-    """
-    return [name for name, digest in record.files.items() if _digest(root / name) != digest]
-
-
-def _digest(path: Path) -> str | None:
+def digest_of(path: Path) -> str | None:
     """Return the SHA-256 of a file, 64 hexadecimal digits; None if it is missing or cannot be read.
 
     path: path of the file.
@@ -140,7 +126,7 @@ def _digest(path: Path) -> str | None:
         return None
 
 
-def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
+def write_files(root: Path, files: Files) -> dict[str, str]:
     """Write files below a folder, each whole or not at all, and return their digests.
 
     A file that has this content already is left alone; folders are created.
@@ -152,7 +138,7 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     for name, content in files.items():
-        if _digest(root / name) != digests[name]:
+        if digest_of(root / name) != digests[name]:
             make_folder((root / name).parent)
             write_bytes(root / name, content)
     return digests
@@ -187,7 +173,7 @@ def make_folder(path: Path) -> None:
 _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
-def motion_files(motions: Dataset, count: int, block: int, number: int | None) -> dict[str, bytes]:
+def motion_files(motions: Dataset, count: int, block: int, number: int | None) -> Files:
     """Return files of the group of all motions, as zarr encodes them in memory; nothing is written
     to disk.
 
@@ -203,7 +189,7 @@ def motion_files(motions: Dataset, count: int, block: int, number: int | None) -
     """
     zarr = import_extra("zarr", "runs")
 
-    files: dict[str, Any] = {}
+    files: Named = {}
     group = zarr.open_group(
         zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=motions.attrs
     )
@@ -211,11 +197,11 @@ def motion_files(motions: Dataset, count: int, block: int, number: int | None) -
     for name, variable in motions.variables.items():
         of_motions = "motion" in variable.dims
         # a tuple times False is empty: arrays without motions have neither that axis nor its chunks
-        shape = variable.shape[of_motions:]
+        further = variable.shape[of_motions:]
         array = group.create_array(
             name,
-            shape=(*(count,) * of_motions, *shape),
-            chunks=(*(block,) * of_motions, *shape),
+            shape=(count,) * of_motions + further,
+            chunks=(block,) * of_motions + further,
             dtype=variable.dtype,
             # with zarr's own fill value, 0, xarray would take t = 0 for missing
             fill_value=np.nan if variable.dtype.kind == "f" else None,
@@ -228,43 +214,39 @@ def motion_files(motions: Dataset, count: int, block: int, number: int | None) -
     return {
         key: chunk
         for key, chunk in _as_bytes(files).items()
-        if number is None or not _is_metadata(key)
+        if number is None or not key.endswith(_METADATA)
     }
 
 
-def dataset_files(dataset: Dataset) -> dict[str, bytes]:
+def dataset_files(dataset: Dataset) -> Files:
     """Return all files of a small dataset as zarr writes them: path below its group -> content;
     nothing is written.
 
     The metadata of all arrays together (.zmetadata) are left out; :func:`consolidated` makes them.
 
     dataset: :class:`xr.Dataset` that fits the memory.
-    Raises MissingDependencyError without zarr.
     """
-    zarr = import_extra("zarr", "runs")
+    import zarr
 
-    files: dict[str, Any] = {}
+    files: Named = {}
     dataset.to_zarr(zarr.storage.MemoryStore(files), zarr_format=2, consolidated=False)
     return _as_bytes(files)
 
 
-def consolidated(files: dict[str, bytes]) -> bytes:
+def consolidated(files: Files) -> bytes:
     """Return the content of .zmetadata, JSON from which readers take all metadata at once.
 
     files: path -> content, of the hierarchy; of these only metadata (.zgroup, .zarray, .zattrs)
         count.
     Returns the content in UTF-8, with the paths in alphabetic order.
     """
-    metadata = {key: json.loads(text) for key, text in sorted(files.items()) if _is_metadata(key)}
+    metadata = {
+        key: json.loads(text) for key, text in sorted(files.items()) if key.endswith(_METADATA)
+    }
     return json.dumps({"metadata": metadata, "zarr_consolidated_format": 1}, indent=1).encode()
 
 
-def _is_metadata(key: str) -> bool:
-    """Whether a path is that of a metadata file."""
-    return key.rpartition("/")[2] in _METADATA
-
-
-def _as_bytes(files: Mapping[str, Any]) -> dict[str, bytes]:
+def _as_bytes(files: Named) -> Files:
     """Return the content of zarr's buffers: path -> bytes."""
     return {key: buffer.to_bytes() for key, buffer in files.items()}
 
@@ -275,7 +257,7 @@ def _as_bytes(files: Mapping[str, Any]) -> dict[str, bytes]:
 ADVICE = "give another folder (-o), or delete this one"
 
 
-def about(run: Run) -> dict[str, Any]:
+def about(run: Run) -> Named:
     """Return the attributes of a store, by which a reader finds out how it was made.
 
     run: :class:`runs.Run`, whose results the store holds; text, method, block, blocks, si and
@@ -346,11 +328,10 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
         return
     own = json.dumps(_software())
     if (versions := record.about.get("versions", own)) != own:
-        raise FileError(
-            root, f"was written with other versions, {versions}: finish it with these, or {ADVICE}"
-        )
+        problem = f"was written with other versions, {versions}: finish it with these"
+        raise FileError(root, f"{problem}, or {ADVICE}")
     # this run with the number of motions of the store: has it the identity of the store?
-    before = replace(run, settings=msgspec.structs.replace(run.settings, n=max(record.motions, 1)))
+    before = run._with_settings(n=max(record.motions, 1))
     if of_a_block or record.run != identity(before):
         raise FileError(root, f"contains the results of another run file: {ADVICE}")
     if problem := _no_extension(before, run):
@@ -376,10 +357,8 @@ def _no_extension(before: Run, run: Run) -> str:
     if design == "latin":
         return f"a Latin hypercube, whose points depend on n: keep n = {before.settings.n}"
     if design == "sobol" and n & (n - 1):
-        return (
-            "drawn by Sobol's sequence, which is even only for a power of two: set n = "
-            f"{1 << n.bit_length()}"
-        )
+        even = 1 << n.bit_length()
+        return f"drawn by Sobol's sequence, which is even only for a power of two: set n = {even}"
     if run.block != before.block:
         return f"in blocks of {before.block}: add block = {before.block} to [run]"
     if run.method != before.method:
@@ -399,7 +378,7 @@ _SERIES = {
 }
 
 
-def attributes(name: str, si: bool) -> dict[str, Any]:
+def attributes(name: str, si: bool) -> Named:
     """Return the attributes of a column of a store, of types that JSON has.
 
     name: name of an input (as base_E, tau_2, drive_torque_time_1), of a field or an end of a motion
@@ -410,23 +389,22 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     of the codes regime, status and flow no units, but the list flag_values and the text
     flag_meanings, a word for each code.  The long_name is "" of a name that is none of these.
     """
-    if name.startswith(PREFIXES["drive"]):
+    first, _, rest = name.partition("_")
+    if first == "drive":
         # drive_torque, drive_torque_2 (its second value) or drive_torque_time_2
-        load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")
+        load, _, corner = rest.partition("_")
         if corner.startswith("time_"):
             times = f"time {corner.removeprefix('time_')} of the given {load}"
             return {"long_name": times, "units": attributes("t", si)["units"]}
         known = attributes(load, si)
-        return known | {
-            "long_name": f"given: {known['long_name']}" + f", value {corner}" * bool(corner)
-        }
-    if name.startswith(PREFIXES["base"]):
+        value = f", value {corner}" * bool(corner)
+        return known | {"long_name": f"given: {known['long_name']}{value}"}
+    if first == "base":
         # a number of the base is named as that of the cylinder, whose words are exchanged
-        known = attributes(name.removeprefix(PREFIXES["base"]), si)
+        known = attributes(rest, si)
         return known | {"long_name": f"base: {known['long_name'].removesuffix(' of the cylinder')}"}
-    letter, _, index = name.partition("_")
-    if letter in _SERIES and index.isdecimal():
-        return {"long_name": _SERIES[letter].format(index), "units": "1"}
+    if first in _SERIES and rest.isdecimal():
+        return {"long_name": _SERIES[first].format(rest), "units": "1"}
     if name in CylinderSection.__annotations__ and name not in SYMBOLS:
         return {"long_name": f"{name} of the cylinder", "units": si_unit(name)}
     known = column_attributes(name, si)

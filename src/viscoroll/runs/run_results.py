@@ -6,7 +6,6 @@ one netCDF-4 file (:func:`export_netcdf`).
 import math
 import os
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +15,16 @@ from ..core import (
     DataFrame,
     Dataset,
     FileError,
+    FilePath,
     MotionStatus,
+    Names,
     Result,
     SummaryRow,
     as_path,
     column_name,
     fix_texts,
     import_extra,
+    names_ending,
     replace_file,
     unit_of,
 )
@@ -47,7 +49,7 @@ class Verdict:
 
     blocks: int
     missing: tuple[int, ...]
-    damaged: tuple[str, ...]
+    damaged: Names
     finished: bool
 
     @property
@@ -63,17 +65,17 @@ class Verdict:
         that names the remedy.
         """
         if self.ok:
-            blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
+            blocks = f"{self.blocks} block{'s' * (self.blocks != 1)}"
             return f"complete: {blocks} and the summaries match their checksums (SHA-256)"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
-        lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"] * bool(
-            self.missing
-        )
-        lines += ["the summaries are missing or incomplete"] * (not self.finished)
+        if self.missing:
+            lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"]
+        if not self.finished:
+            lines += ["the summaries are missing or incomplete"]
         return "\n".join([*lines, "the same `viscoroll ensemble` command repairs it"])
 
 
-def verify(path: str | PathLike[str]) -> Verdict:
+def verify(path: FilePath) -> Verdict:
     """Read every file of a store and compare it with its SHA-256.
 
     Parameters
@@ -106,7 +108,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     complete: 1 block and the summaries match their checksums (SHA-256)
     """
     root = as_path(path)
-    start = start_of(path)
+    start = start_of(root)
     motions, size, blocks = (
         int(start.about[name]) for name in ("motions", "motions_a_block", "blocks")
     )
@@ -126,30 +128,25 @@ def verify(path: str | PathLike[str]) -> Verdict:
     return Verdict(blocks, missing, tuple(damaged), not faults["end"])
 
 
-def start_of(path: str | PathLike[str]) -> Record:
+def start_of(root: Path) -> Record:
     """Return the record "start" of a store, a :class:`Record` that states identity, motions and
     attributes of the run.
 
-    path: folder of the store.
+    root: path of the folder of the store.
     Raises FileError if the folder does not exist, may not be read, or has no such record or a
     damaged one.
     """
-    if not as_path(path).is_dir():
-        raise FileError(path, "is not a results store: the folder does not exist")
-    refuse_unreadable(Path(path))
-    start = read_record(Path(path) / RECORDS / "start")
-    if start is None:
-        raise FileError(
-            path,
-            "is not a results store, or is damaged: repeat its `viscoroll ensemble` to repair it",
-        )
-    return start
+    if not root.is_dir():
+        raise FileError(root, "is not a results store: the folder does not exist")
+    refuse_unreadable(root)
+    if start := read_record(root / RECORDS / "start"):
+        return start
+    raise FileError(
+        root, "is not a results store, or is damaged: repeat its `viscoroll ensemble` to repair it"
+    )
 
 
 # --- A finished store as a result that prints itself and gives datasets ---
-
-#: Moments of a quantity in the summaries, as the ends of their names.
-_MOMENTS = ("mean", "std", "min", "max")
 
 
 class RunResults(Result):
@@ -181,13 +178,9 @@ class RunResults(Result):
         return int(self.summaries.attrs["motions"])
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> Names:
         """Names of the summarised quantities."""
-        return tuple(
-            str(name).removesuffix("_mean")
-            for name in self.summaries
-            if str(name).endswith("_mean")
-        )
+        return (*names_ending(self.summaries, "_mean"),)
 
     @property
     def run_file(self) -> str:
@@ -297,18 +290,17 @@ class RunResults(Result):
         tables = []
         time = column_name("t", unit_of(data["t"].attrs))
         for name in self.names:
-            columns: dict[Any, Any] = {
-                moment: np.atleast_1d(data[f"{name}_{moment}"].values) for moment in _MOMENTS
+            columns: dict = {
+                moment: data[f"{name}_{moment}"].values for moment in ("mean", "std", "min", "max")
             }
-            quantiles = zip(data["quantile"].values, data[f"{name}_quantiles"].values, strict=True)
-            columns |= {float(level): np.atleast_1d(values) for level, values in quantiles}
+            columns |= zip(data["quantile"].values.tolist(), data[f"{name}_quantiles"].values)
+            columns = {column: np.atleast_1d(values) for column, values in columns.items()}
             mean = data[f"{name}_mean"]
             # one number per motion: one row, without a time
             t = data["t"].values if mean.ndim else [np.nan]
             rows = [[column_name(name, unit_of(mean.attrs))], t]
-            tables.append(
-                pd.DataFrame(columns, pd.MultiIndex.from_product(rows, names=["quantity", time]))
-            )
+            index = pd.MultiIndex.from_product(rows, names=["quantity", time])
+            tables.append(pd.DataFrame(columns, index))
         return pd.concat(tables)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
@@ -334,30 +326,22 @@ class RunResults(Result):
         ]
         for name in self.names:
             mean, std = (data[f"{name}_{moment}"] for moment in ("mean", "std"))
-            at = "at the end: " if mean.ndim else ""
-            rows.append(
-                SummaryRow(
-                    name,
-                    f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}",
-                    unit_of(mean.attrs),
-                )
-            )
-        ended = zip(data["status"].values, data["ended"].values, strict=True)
+            at = "at the end: " * mean.ndim
+            text = f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}"
+            rows.append(SummaryRow(name, text, unit_of(mean.attrs)))
         rows += [
             SummaryRow("ended", f"{count}: {MotionStatus(code).message}")
-            for code, count in ended
+            for code, count in zip(data["status"].values, data["ended"].values)
             if count
         ]
         kept = "every motion" if (self.path / MOTIONS).is_dir() else "summaries"
-        units = (
-            ""
-            if unit_of(t.attrs)
-            else ", dimensionless: speeds in R/T_ref, lengths in R, times in T_ref"
-        )
-        return f"Results of a run of {len(self)} motions{units}", [*rows, SummaryRow("kept", kept)]
+        title = f"Results of a run of {len(self)} motions"
+        if not unit_of(t.attrs):
+            title += ", dimensionless: speeds in R/T_ref, lengths in R, times in T_ref"
+        return title, [*rows, SummaryRow("kept", kept)]
 
 
-def open_run(path: str | PathLike[str]) -> RunResults:
+def open_run(path: FilePath) -> RunResults:
     """Open the results of a finished run.
 
     Parameters
@@ -403,17 +387,14 @@ def open_run(path: str | PathLike[str]) -> RunResults:
 
 # --- Export of a store to one netCDF-4 file ---
 
-#: Largest ratio of deflated to plain size, of bytes that cannot be compressed.
-_DEFLATE_RATIO = 1.002
-#: Bytes of a chunk in the index of an array, at most.
-_INDEX_ENTRY = 512
+
 #: Bytes of the head of an array, and of the file, at most.
 _HEAD = 1 << 16
 #: Bytes written at a time where the system cannot reserve disk space.
 _PIECE = 1 << 24
 
 
-def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None:
+def export_netcdf(store: FilePath, path: FilePath) -> None:
     """Write a finished store as netCDF-4: summaries at the root, all motions in the group
     "motions".
 
@@ -467,8 +448,7 @@ def _append_motions(store: Path, path: Path) -> None:
     zarr, which the caller has met before.
     """
     import h5netcdf
-
-    zarr = import_extra("zarr", "runs")
+    import zarr
 
     source = zarr.open_group(store, mode="r", path=MOTIONS, use_consolidated=False)
     arrays = dict(source.arrays())
@@ -479,11 +459,10 @@ def _append_motions(store: Path, path: Path) -> None:
         target.dimensions = {"motion": arrays["status"].shape[0], "t": arrays["t"].shape[0]}
         for name, array in arrays.items():
             attrs = dict(array.attrs)
-            # names of the axes, which zarr has as an attribute and netCDF by itself
-            dims = attrs.pop("_ARRAY_DIMENSIONS")
             variable = target.create_variable(
                 name,
-                dims,
+                # names of the axes, which zarr has as an attribute and netCDF by itself
+                attrs.pop("_ARRAY_DIMENSIONS"),
                 array.dtype,
                 chunks=array.chunks,
                 compression="gzip",
@@ -492,15 +471,16 @@ def _append_motions(store: Path, path: Path) -> None:
                 fletcher32=True,
             )
             variable.attrs.update(attrs)
-            for start in range(0, array.shape[0], array.chunks[0]):
-                rows = slice(start, start + array.chunks[0])
-                variable[rows] = array[rows]
+            count = array.chunks[0]
+            for start in range(0, array.shape[0], count):
+                variable[start : start + count] = array[start : start + count]
 
 
 def _largest_size(array: Any) -> int:
     """Return the bytes that an array of zarr takes in the file at most, whatever its values."""
     chunk = array.dtype.itemsize * math.prod(array.chunks)
-    return array.nchunks * int(_DEFLATE_RATIO * chunk + _INDEX_ENTRY) + _HEAD
+    # bytes that cannot be compressed grow by 0.2 %, and a chunk takes 512 bytes in the index
+    return array.nchunks * int(1.002 * chunk + 512) + _HEAD
 
 
 def _reserve(path: Path, size: int) -> None:

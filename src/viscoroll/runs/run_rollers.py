@@ -2,7 +2,6 @@
 arrays.
 """
 
-from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -10,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 import msgspec
 import numpy as np
 
-from ..core import Floats, ParameterError, Scale, Schedule, check_array, described_error
+from ..core import Named, ParameterError, Scale, Schedule, check_array, described_error
 from ..materials import (
     SECTIONS,
     Material,
@@ -50,6 +49,10 @@ class ScheduleSection(msgspec.Struct):
     values: Numbers
 
 
+#: A load or a prescribed speed: a number, a function of time, or none.
+Load = float | ScheduleSection | None
+
+
 class DriveSection(msgspec.Struct):
     """[drive]: loads, and prescribed speeds.
 
@@ -67,13 +70,13 @@ class DriveSection(msgspec.Struct):
         [start] is then left out, or the value of omega at t = 0.
     """
 
-    force: float | ScheduleSection | None = None
-    torque: float | ScheduleSection | None = None
-    brake: float | ScheduleSection | None = None
+    force: Load = None
+    torque: Load = None
+    brake: Load = None
     slope: float | None = None
     drag: float | None = None
-    V: float | ScheduleSection | None = None
-    omega: float | ScheduleSection | None = None
+    V: Load = None
+    omega: Load = None
 
 
 class HeatSection(msgspec.Struct):
@@ -91,7 +94,7 @@ class HeatSection(msgspec.Struct):
 
 
 #: Sections whose numbers may be uncertain -> their keys, in the order in which inputs are drawn.
-RUN_SECTIONS: dict[str, Any] = {"start": StartSection, "drive": DriveSection, "heat": HeatSection}
+RUN_SECTIONS: Named = {"start": StartSection, "drive": DriveSection, "heat": HeatSection}
 
 
 # --- The motions that they describe ---
@@ -107,7 +110,7 @@ class Rollers(Cylinder):
     """
 
     body_data = None  # type: ignore[assignment]
-    about: ClassVar[dict[str, Any]] = {}
+    about: ClassVar[Named] = {}
 
     @property
     def seconds(self) -> bool:
@@ -149,14 +152,12 @@ class Rollers(Cylinder):
         """
         scale = super().scale
         if self.seconds:
-            scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {
-                "x": scale["V"],
-                "angle": scale["omega"],
-            }
+            in_seconds = dict.fromkeys(("t", "onset_time", "rest_time"), 1.0)
+            scale.update(in_seconds, x=scale["V"], angle=scale["omega"])
         return scale
 
 
-def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
+def roller_of(path: Path, content: Named) -> Scene | Cylinder:
     """Return the roller of the motions of a block.
 
     path: path of the run file, for errors and the files that it names.
@@ -178,15 +179,12 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
     if "heat" in content:
         bodies = _warm_bodies(content, numbers, bodies)
-    differ = np.ndim(numbers.get("T_epsilon", 0.0)) or any(
-        isinstance(body, Solid) for body in bodies.values()
-    )
+    solids = any(isinstance(body, Solid) for body in bodies.values())
+    differ = solids or np.ndim(numbers.get("T_epsilon", 0.0))
     return (Rollers if differ else Cylinder)(**numbers, **bodies)
 
 
-def _warm_bodies(
-    content: Mapping[str, Any], numbers: Mapping[str, Any], bodies: dict[str, Any]
-) -> dict[str, Any]:
+def _warm_bodies(content: Named, numbers: Named, bodies: Named) -> Named:
     """Return the bodies of all motions at the temperatures at which their cylinders roll.
 
     content: sections as in :func:`roller_of`, of which [heat] and [start] are read.
@@ -208,12 +206,12 @@ def _warm_bodies(
                 "has uncertain numbers",
                 "certain beside [heat]: its temperature follows from the law of one material",
             )
-    given = {name: heat[name] for name in ("ambient", "conductance")}
-    found = Cylinder(**numbers, **bodies).temperature(speed, **given)
-    for n, reason in enumerate(np.ravel(found.reason)):
+    ambient = heat["ambient"]
+    found = Cylinder(**numbers, **bodies).temperature(
+        speed, ambient=ambient, conductance=heat["conductance"]
+    )
+    for reason, theta, V in np.broadcast(found.reason, ambient, speed):
         if reason:
-            shape = np.shape(found.reason)
-            theta, V = (np.broadcast_to(each, shape).flat[n] for each in (heat["ambient"], speed))
             text = f"= {theta:g} gives no allowed temperature at V = {V:g} m/s ({reason})"
             # a roller too hot needs less; a frequency outside of the data may be too high or low
             raise described_error(
@@ -221,7 +219,7 @@ def _warm_bodies(
             )
     # the coldest equilibrium, which a roller takes from cold
     theta = found.temperature[..., 0]
-    warm = dict(bodies)
+    warm = bodies.copy()
     for name, body in bodies.items():
         # a body that does not relax stays as it is
         if body.prony.alpha > 1.0 and not theta.ndim:
@@ -233,7 +231,7 @@ def _warm_bodies(
     return warm
 
 
-def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
+def drive_of(content: Named) -> Named:
     """Return the loads and prescribed speeds of the section [drive] as keywords of
     :func:`viscoroll.ensemble`.
 
@@ -248,14 +246,13 @@ def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
     :func:`_schedule` (an empty list, or arrays of different n in one list); TypeError for a table
     with a key missing or unknown.
     """
-    drive = content.get("drive", {})
     return {
         name: _schedule(name, **load) if isinstance(load, dict) else load
-        for name, load in drive.items()
+        for name, load in content.get("drive", {}).items()
     }
 
 
-def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
+def _schedule(name: str, times: list, values: list) -> Schedule:
     """Make a load, or a prescribed speed, that is piecewise linear in time, from lists by corner.
 
     name: name of the load or speed, for errors.
@@ -268,7 +265,7 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
     """
     try:
         return Schedule(
-            *(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values))
+            *(np.stack(np.broadcast_arrays(*each), axis=-1) for each in (times, values))
         )
     except ParameterError as error:
         raise ParameterError(name, error.value, error.allowed, f"{name}: {error}") from error
@@ -320,16 +317,17 @@ def _body(path: Path, name: str, section: Any) -> Any:
         return section
     series = parse_series(path, name, section) or typical.prony
     # the series, and T_ref, are those at the temperature of the first motion
-    if (factors := _time_factors(typical, section)) is not None:
+    factors = _time_factors(typical, section)
+    if np.ndim(factors):
         series = series.slower(factors)
     E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
-    if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
+    if not (series.shape or any(map(np.ndim, (E, nu, thickness)))):
         return typical
     if thickness is not None:
         thickness = check_array("thickness", thickness, above=0.0)
     # a given E is that at the reference temperature, that of ``typical`` at its temperature
     E = check_array("E", E, above=0.0) * (typical.E / E[0]) if np.ndim(E) else typical.E
-    if factors is not None and typical.vertical_shift:
+    if np.ndim(factors) and typical.vertical_shift:
         shift, base = typical.vertical_shift, typical.temperature
         E = E * np.array([vertical_factor(shift, at, base) for at in section["temperature"]])
     return Solid(
@@ -341,7 +339,7 @@ def _body(path: Path, name: str, section: Any) -> Any:
     )
 
 
-def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
+def measured_bands(path: Path, content: Named) -> dict[Measured, tuple[Any, Any]]:
     """Return the transit frequencies for which the data of each body suffice, at the temperature of
     each motion.
 
@@ -359,21 +357,17 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
     bands: dict[Measured, Any] = {}
     if "heat" in content:  # the temperatures are known when the rollers are made, which warns
         return bands
-    for name in SECTIONS:
-        section = content.get(name)
-        if section is None:
-            continue
+    for name in (name for name in SECTIONS if name in content):
+        section = content[name]
         typical = _first_material(path, name, section)
-        if (record := typical.measured) is None:
-            continue
-        factors = None if typical is section else _time_factors(typical, section)
-        bands[record] = tuple(
-            end if factors is None else end / factors for end in record.transit_band
-        )
+        if record := typical.measured:
+            factors = 1.0 if typical is section else _time_factors(typical, section)
+            low, high = record.transit_band
+            bands[record] = low / factors, high / factors
     return bands
 
 
-def _time_factors(typical: Material, section: Mapping[str, Any]) -> Floats | None:
+def _time_factors(typical: Material, section: Named) -> Any:
     """Return the factors of the relaxation times at the temperature of each motion, relative to
     those of the first.
 
@@ -382,15 +376,16 @@ def _time_factors(typical: Material, section: Mapping[str, Any]) -> Floats | Non
     section: content of the section [material] or [base], whose "temperature", in degrees Celsius,
         may be an array (n,).
     Returns the factors, dimensionless, > 0, (n,), of which the first is 1: below 1 where a motion
-    is hotter than the first, so that its material relaxes faster; None if the temperature is a
-    number or not given.
+    is hotter than the first, so that its material relaxes faster; the number 1.0 if the temperature
+    is a number or not given.
     Raises ParameterError for a temperature that the shift does not allow.
     """
     if not np.ndim(section.get("temperature", 0.0)):
-        return None
-    shift, base = typical.shift, typical.temperature
-    assert shift is not None
-    return np.array([relative_shift(shift, at, base) for at in section["temperature"]])
+        return 1.0
+    shift: Any = typical.shift
+    return np.array(
+        [relative_shift(shift, at, typical.temperature) for at in section["temperature"]]
+    )
 
 
 def _first(part: Any) -> Any:

@@ -14,30 +14,32 @@ A block is a range of the motions of a run: :func:`block_inputs` draws its rando
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
-from ..core import FileError, Floats, NDArray, as_file_error, shape_error, write_bytes
+from ..core import FileError, Named, NDArray, as_file_error, shape_error, write_bytes
 from ..motion import Ensemble, Summary, merge_summaries, summarise, summary_dataset
 from ..motion.ensemble import ensemble
 from ..sampling import points
-from . import run_records
 from .run_records import (
     ADVICE,
     RECORDS,
+    Files,
     Record,
     about,
     attributes,
-    damaged,
+    consolidated,
+    dataset_files,
+    digest_of,
     encoded,
     identity,
     make_folder,
+    motion_files,
     read_record,
     refuse_another,
     refuse_unreadable,
@@ -45,15 +47,12 @@ from .run_records import (
 )
 from .run_rollers import drive_of, measured_bands, roller_of
 from .runfile import START, Run
+from .uncertain_inputs import Columns
 
 # --- One block of a run, a range of its motions ---
 
-#: Number of motions whose starts are compared with the bands of the materials: the standard error
-#: of a share of 1 % is then a third of it.
-_STARTS = 1000
 
-
-def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
+def block_inputs(run: Run, block: int, most: int | None = None) -> Columns:
     """Draw the inputs of the motions of a block: the same run, block and ``most`` give the same
     bits, whatever blocks were drawn before.
 
@@ -69,20 +68,11 @@ def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Flo
     refuses.
     """
     start, stop = run.edges(block)
+    if most is not None:
+        stop = min(stop, start + most)
     settings = run.settings
-    dimensions = len(run.inputs.dimensions)
-    stop = stop if most is None else min(stop, start + most)
-    return run.inputs.values(
-        points(
-            settings.design,
-            settings.seed,
-            n=settings.n,
-            dimensions=dimensions,
-            start=start,
-            stop=stop,
-            block=block,
-        )
-    )
+    of_all = settings.design, settings.seed, settings.n, len(run.inputs.dimensions)
+    return run.inputs.values(points(*of_all, start, stop, block))
 
 
 def roll_inputs(
@@ -156,7 +146,7 @@ def roll_inputs(
     )
 
 
-def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
+def roll_block(run: Run, block: int) -> tuple[Columns, Ensemble]:
     """Draw the inputs of a block, and compute its motions, on one thread, as several blocks are
     rolled at a time.
 
@@ -196,10 +186,7 @@ def warn_of_materials(run: Run) -> None:
         bands = measured_bands(run.path, content)
         if not (bands and warn_of_unmeasured_starts(_fraction_outside(run), bands)):
             warn_of_contact(roller_of(run.path, content), run.inputs.largest("V0"))
-    settings = msgspec.structs.replace(
-        run.settings, summaries=("V",), keep="summaries", method="integrate"
-    )
-    roll_inputs(replace(run, settings=settings), medians)
+    roll_inputs(run._with_settings(summaries=("V",), keep="summaries", method="integrate"), medians)
 
 
 def _fraction_outside(run: Run) -> float:
@@ -213,20 +200,20 @@ def _fraction_outside(run: Run) -> float:
     run: :class:`runs.Run` in SI units that gives V0; its first motions, at most 1000 of the first
     block, are examined.
     Returns the fraction of these motions that are outside the band of at least one material, a
-    float in [0, 1]; 0.0 without bands.
+    float in [0, 1].
     Raises ParameterError for inputs of these motions that a cylinder does not allow, FileError for
     a material.
     """
-    content = run.inputs.filled(block_inputs(run, 0, _STARTS))
+    # of 1000 starts the standard error of a share of 1 % is a third of it
+    content = run.inputs.filled(block_inputs(run, 0, most=1000))
     roller: Any = roller_of(run.path, content)
     V0 = np.abs(content["start"]["V0"])
     scene = roller.scene()
     # lam l0 with l0 = R/kappa is the contact length
     lam = contact(scene, V0 / roller.scale["V"], delta=0.0, fields="lam").lam
     frequency = transit_frequency(V0, lam * roller.R / scene.kappa)
-    outside: Any = False
-    for low, high in measured_bands(run.path, content).values():
-        outside = outside | (frequency < low) | (frequency > high)
+    bands = measured_bands(run.path, content).values()
+    outside = np.any([(frequency < low) | (frequency > high) for low, high in bands], axis=0)
     return float(np.mean(outside & (V0 > 0.0)))
 
 
@@ -234,10 +221,6 @@ def _fraction_outside(run: Run) -> float:
 
 #: Group of the motions in a store.
 MOTIONS = "motions"
-#: File in the folder of records that one process locks.
-_LOCK = ".lock"
-#: Columns of one number for each motion that are kept beside the fields.
-_END_COLUMNS = ("onset_time", "rest_time", "status", "flow")
 
 
 @dataclass(frozen=True)
@@ -255,13 +238,12 @@ class Store:
     run: Run
 
     def start(self) -> None:
-        """Create the folder and write the metadata of all motions; a store of this run stays as it
-        is.
+        """Write the metadata of all motions; a store of this run stays as it is.
 
-        The store of the same run with fewer motions is extended: its metadata are written anew, its
-        summaries are removed.  Temporary files of killed processes are removed.  Metadata are those
-        of :func:`metadata`, none if motions are not kept; the record "start" is written in any
-        case.
+        The folder of the records must exist (:func:`locked`).  The store of the same run with fewer
+        motions is extended: its metadata are written anew, its summaries are removed.  Temporary
+        files of killed processes are removed.  Metadata are those of :func:`metadata`, none if
+        motions are not kept; the record "start" is written in any case.
 
         Raises
         ------
@@ -272,12 +254,11 @@ class Store:
             without zarr.
         """
         self.refuse_other()
-        make_folder(self.root / RECORDS)
         self._remove_temporary_files()
         self._remove_old_end()
         self._write_part("start", metadata(self.run), about=about(self.run))
 
-    def _write_part(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
+    def _write_part(self, name: str | int, files: Files, **more: Any) -> None:
         """Write the files of a part, then its record, which makes the part complete.
 
         name: "start", "end" or the number of a block, from 0.
@@ -338,15 +319,11 @@ class Store:
         records = map(
             read_record, (_record_path(root, "start"), _record_path(root, "end"), *blocks)
         )
-        record = next((record for record in records if record is not None), None)
-        if record is not None:
+        if record := next(filter(None, records), None):
             refuse_another(root, self.run, record)
-            return
-        others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
-        if others:
-            raise FileError(
-                root, f"is no results store, as it has {', '.join(others[:3])}: give another folder"
-            )
+        elif others := {path.name for path in root.iterdir()} - {RECORDS, MOTIONS}:
+            names = ", ".join(sorted(others)[:3])
+            raise FileError(root, f"is no results store, as it has {names}: give another folder")
 
     def missing(self) -> Iterator[int]:
         """Yield the numbers of the blocks that are missing or damaged, ascending.
@@ -384,8 +361,8 @@ class Store:
         dataset = summary_dataset(
             merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
         )
-        files = run_records.dataset_files(dataset.assign_attrs(about(self.run)))
-        files[".zmetadata"] = run_records.consolidated(files | metadata(self.run))
+        files = dataset_files(dataset.assign_attrs(about(self.run)))
+        files[".zmetadata"] = consolidated(files | metadata(self.run))
         self._write_part("end", files)
         self._remove_temporary_files()
 
@@ -404,14 +381,12 @@ class Store:
         for block in range(self.run.blocks):
             record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
-                raise FileError(
-                    self.root,
-                    f"block {block} was damaged during the run: the same command repairs it",
-                )
+                problem = f"block {block} was damaged during the run"
+                raise FileError(self.root, f"{problem}: the same command repairs it")
             yield record.summary
 
 
-def block_content(run: Run, block: int) -> tuple[dict[str, bytes], Summary]:
+def block_content(run: Run, block: int) -> tuple[Files, Summary]:
     """Roll the motions of a block, and make the files and the summary that the store keeps of it;
     nothing is written.
 
@@ -426,12 +401,13 @@ def block_content(run: Run, block: int) -> tuple[dict[str, bytes], Summary]:
     installed.
     """
     values, motions = roll_block(run, block)
-    keeps = run.settings.keep == "all"
-    files = _motion_files(run, columns_of(run, values, motions), block) if keeps else {}
+    files = {}
+    if run.settings.keep == "all":
+        files = _motion_files(run, columns_of(run, values, motions), block)
     return files, summarise(motions, run.settings.summaries)
 
 
-def metadata(run: Run) -> dict[str, bytes]:
+def metadata(run: Run) -> Files:
     """Return the metadata of the group of all motions: path below the store -> content; {} if
     motions are not kept.
 
@@ -448,9 +424,7 @@ def metadata(run: Run) -> dict[str, bytes]:
     return _motion_files(run, columns_of(run, values, roll_inputs(run, values)))
 
 
-def _motion_files(
-    run: Run, columns: dict[str, NDArray], block: int | None = None
-) -> dict[str, bytes]:
+def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> Files:
     """Return files of the group of all motions: the chunks of a block, or the metadata.
 
     It makes the dataset, with attributes and times, that :func:`.run_records.motion_files` encodes.
@@ -470,11 +444,11 @@ def _motion_files(
         for name, values in columns.items()
     }
     motions = xr.Dataset(variables, {"t": ("t", run.t, attributes("t", run.si))}, about(run))
-    files = run_records.motion_files(motions, run.settings.n, run.block, block)
+    files = motion_files(motions, run.settings.n, run.block, block)
     return {f"{MOTIONS}/{name}": content for name, content in files.items()}
 
 
-def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
+def columns_of(run: Run, values: Named, motions: Ensemble) -> dict[str, NDArray]:
     """Return the columns that are kept of motions: inputs, fields and how they ended.
 
     run: :class:`runs.Run`, whose settings name the fields.
@@ -489,8 +463,9 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     Raises KeyError for an input that ``values`` does not have.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
-    columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
-    return columns | {"flow": columns["flow"].astype(np.int8)}
+    kept = (*run.settings.fields, "onset_time", "rest_time", "status")
+    columns |= {name: getattr(motions, name) for name in kept}
+    return columns | {"flow": motions.flow.astype(np.int8)}
 
 
 def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
@@ -502,14 +477,14 @@ def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
     run, motions: identity of the run (:func:`.run_records.identity`) and number of motions of the
         part that the record must state.
     Returns [] if the part is complete; the path of the record alone if that is missing, damaged, of
-    another run or of another number of motions; else the paths of files that are missing or
-    damaged.
+    another run or of another number of motions; else the paths of files that are missing, cannot be
+    read, or differ from their digest.
     """
     path = _record_path(root, name)
     record = read_record(path)
     if record is None or (record.run, record.motions) != (run, motions):
         return [str(path.relative_to(root))]
-    return damaged(root, record)
+    return [file for file, digest in record.files.items() if digest_of(root / file) != digest]
 
 
 def _record_path(root: Path, name: str | int) -> Path:
@@ -531,16 +506,14 @@ def locked(root: Path) -> Iterator[None]:
     from filelock import FileLock, Timeout
 
     make_folder(root / RECORDS)
-    lock = FileLock(root / RECORDS / _LOCK, timeout=0)
+    lock = FileLock(root / RECORDS / ".lock", timeout=0)
     try:
         lock.acquire()
     except Timeout:
         raise FileError(root, "another process writes here: wait until that process ends") from None
     except (OSError, NotImplementedError) as error:  # some network disks
-        raise FileError(
-            root,
-            f"cannot be locked ({getattr(error, 'strerror', None) or error}): use a local disk",
-        ) from error
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(root, f"cannot be locked ({reason}): use a local disk") from error
     try:
         yield
     finally:

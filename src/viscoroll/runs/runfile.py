@@ -21,9 +21,8 @@ All keys are in docs/ensembles.md.
 import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
-from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import msgspec
 import numpy as np
@@ -31,7 +30,10 @@ import numpy as np
 from ..contact_mechanics import refuse_several_tables
 from ..core import (
     FileError,
+    FilePath,
     Floats,
+    Named,
+    Names,
     ParameterError,
     as_section_error,
     check_names,
@@ -120,8 +122,8 @@ class RunSection(msgspec.Struct, frozen=True):
     rested: bool | float = False
     block: Whole | None = None
     keep: Literal["summaries", "all"] = "summaries"
-    fields: tuple[str, ...] = ("V", "omega", "x")
-    summaries: tuple[str, ...] = ("V", "omega", "x", "onset_time")
+    fields: Names = ("V", "omega", "x")
+    summaries: Names = ("V", "omega", "x", "onset_time")
     quantiles: tuple[Share, ...] = LEVELS
 
 
@@ -167,9 +169,8 @@ class Run:
         """
         if self.settings.method != "auto":
             return self.settings.method
-        if not self.mappable:
-            return "integrate"
-        return "flow" if self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
+        pays = self.mappable and self.settings.n >= FLOW_PAYS and self.fastest > 0.0
+        return "flow" if pays else "integrate"
 
     @cached_property
     def mappable(self) -> bool:
@@ -180,8 +181,7 @@ class Run:
         driven = self.inputs.content.get("drive") or self.settings.unsteady
         if driven or not set(self.inputs.uncertain) <= set(START):
             return False
-        roller = roller_of(self.path, self.inputs.filled(self.inputs.medians))
-        return roller.scene().like_bodies
+        return roller_of(self.path, self.inputs.filled(self.inputs.medians)).scene().like_bodies
 
     @cached_property
     def fastest(self) -> float:
@@ -201,13 +201,14 @@ class Run:
         return "cylinder" in self.inputs.content
 
     @property
-    def fields(self) -> tuple[str, ...]:
+    def fields(self) -> Names:
         """Fields of the motions that are kept (with keep = "all" only) or summarised, in the order
         of ``FIELDS``.
         """
         needed = {name for wanted in self.settings.summaries for name in QUANTITIES[wanted].fields}
-        kept = set(self.settings.fields) if self.settings.keep == "all" else set()
-        return tuple(name for name in FIELDS if name in needed | kept)
+        if self.settings.keep == "all":
+            needed |= {*self.settings.fields}
+        return tuple(name for name in FIELDS if name in needed)
 
     @property
     def bytes_a_motion(self) -> int:
@@ -227,16 +228,24 @@ class Run:
         a single one takes more; not more than 2^20 motions of a flow map or 2^16 that are
         integrated.  In either case it is n if n is smaller.
         """
-        if self.settings.block is not None:
-            return min(self.settings.block, self.settings.n)
-        # a power of two suits Sobol's sequence: the largest one that fits
-        fits = 1 << max(_MOST_BYTES // self.bytes_a_motion, 1).bit_length() - 1
-        return min(_MOST_MOTIONS[self.method], fits, self.settings.n)
+        block = self.settings.block
+        if block is None:
+            # a power of two suits Sobol's sequence: the largest one that fits
+            fits = 1 << max(_MOST_BYTES // self.bytes_a_motion, 1).bit_length() - 1
+            block = min(_MOST_MOTIONS[self.method], fits)
+        return min(block, self.settings.n)
 
     @property
     def blocks(self) -> int:
         """Number of blocks."""
         return -(-self.settings.n // self.block)
+
+    def _with_settings(self, **changes: Any) -> Self:
+        """Return a new run with other values of some settings.
+
+        changes: name of a setting of :class:`RunSection` -> its value, which is not checked.
+        """
+        return replace(self, settings=msgspec.structs.replace(self.settings, **changes))
 
     def edges(self, block: int) -> tuple[int, int]:
         """Return the range of the motions of a block, counted over the run.
@@ -259,7 +268,7 @@ class Run:
         return block * self.block, min((block + 1) * self.block, self.settings.n)
 
 
-def read_run(path: str | PathLike[str]) -> Run:
+def read_run(path: FilePath) -> Run:
     """Read and check a run file.
 
     Parameters
@@ -300,12 +309,9 @@ def read_run(path: str | PathLike[str]) -> Run:
     for name in START:
         # V0 may be missing where [drive] prescribes V, omega0 where it prescribes omega
         if name not in content["start"] and name[:-1] not in content.get("drive", {}):
-            advice = (
-                ': must be a number, or "rolling" for V0/R'
-                if "V0" in content["start"]
-                else ": must be a number"
-            )
-            raise section_error(path, "start", name, f"{name} is missing{advice}")
+            advice = ', or "rolling" for V0/R' * ("V0" in content["start"])
+            problem = f"{name} is missing: must be a number{advice}"
+            raise section_error(path, "start", name, problem)
     materials = parse_materials(path, medians)
     # a material without uncertain numbers is read once
     certain = {
@@ -326,14 +332,8 @@ def read_run(path: str | PathLike[str]) -> Run:
         check_names("fields", settings.fields, FIELDS, "a field")
         check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
-    digest = _digest(
-        settings,
-        times,
-        content=content,
-        materials=[material_as_toml(material) for material in materials.values()],
-        inputs=inputs,
-    )
-    run = Run(path=path, text=text, settings=settings, inputs=inputs, t=times, digest=digest)
+    digest = _digest(settings, times, content, materials, inputs)
+    run = Run(path, text, settings, inputs, times, digest)
     if not settings.summaries:
         raise section_error(
             path, "run", "summaries", "summaries = []: must name at least one quantity"
@@ -363,7 +363,7 @@ def _check_inputs(run: Run) -> None:
     parameter that is refused.
     """
     inputs = run.inputs
-    medians = run.inputs.medians
+    medians = inputs.medians
     _check_motions(run, medians)
     for number in inputs_in(inputs.content):
         ends = inputs.ends(number.name)
@@ -388,7 +388,7 @@ def _check_inputs(run: Run) -> None:
         )
 
 
-def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
+def _check_motions(run: Run, values: Named, advice: str = "") -> None:
     """Raise the error that :func:`_fault_of` returns as FileError with its line; nothing is rolled,
     None is returned.
 
@@ -405,7 +405,7 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
         raise error
 
 
-def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | None:
+def _fault_of(run: Run, values: Named) -> ParameterError | FileError | None:
     """Find out whether motions would be refused, without rolling them.
 
     run: :class:`runs.Run`, of which path, inputs, the last of t, and of the settings rtol, rest,
@@ -420,15 +420,11 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
     try:
         roller = roller_of(run.path, content)
         for name in ("unsteady", "rested"):
-            if (
-                getattr(settings, name) is not False
-                and isinstance(roller, Rollers)
-                and roller.seconds
-            ):
-                return ParameterError(
-                    name, str(getattr(settings, name)).lower(), "left out if T_epsilon is uncertain"
-                )
-        start = tuple(content["start"].get(name) for name in START)
+            given = getattr(settings, name)
+            if given is not False and isinstance(roller, Rollers) and roller.seconds:
+                allowed = "left out if T_epsilon is uncertain"
+                return ParameterError(name, str(given).lower(), allowed)
+        start = tuple(map(content["start"].get, START))
         options = SolverOptions(
             rtol=settings.rtol,
             rest=settings.rest,
@@ -447,11 +443,7 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
 
 
 def _digest(
-    settings: RunSection,
-    times: Floats,
-    content: dict[str, Any],
-    materials: list[str],
-    inputs: Inputs,
+    settings: RunSection, times: Floats, content: Named, materials: Named, inputs: Inputs
 ) -> str:
     """Return the ``digest`` of a :class:`runs.Run`.
 
@@ -462,24 +454,27 @@ def _digest(
     count.
     times: output times, (t,), in the unit of the file.
     content: name of a section, or ``preset`` -> content, as read; [run] is left out.
-    materials: materials of the median inputs, as TOML, so that files that they name count too.
+    materials: name of a section -> material of the median inputs, so that files that they name
+        count too.
     inputs: :class:`.uncertain_inputs.Inputs`, whose columns of data files, names and numbers,
     count, and the order of its dimensions.
     Returns a SHA-256, 64 hexadecimal digits.
     """
-    kept = {
-        name: value
-        for name, value in msgspec.to_builtins(settings).items()
-        if name not in _NOT_IN_DIGEST
-    }
-    sections = {name: section for name, section in content.items() if name != "run"}
-    samples = [
-        [name, hashlib.sha256(values.tobytes()).hexdigest()]
-        for columns in inputs.joint.values()
-        for name, values in columns.items()
+    kept = msgspec.to_builtins(settings)
+    for name in _NOT_IN_DIGEST:
+        del kept[name]
+    described = [
+        kept,
+        times.tolist(),
+        {name: section for name, section in content.items() if name != "run"},
+        [material_as_toml(material) for material in materials.values()],
+        [
+            [name, hashlib.sha256(column.tobytes()).hexdigest()]
+            for name, column in inputs.columns.items()
+        ],
+        inputs.dimensions,
     ]
     # deterministic: keys in sorted order
-    described = [kept, times.tolist(), sections, materials, samples, inputs.dimensions]
     return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()
 
 
@@ -517,11 +512,11 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
     matrix = np.eye(len(names))
     for (a, b), value in pairs.items():
         problem = ""
-        if unknown := [name for name in (a, b) if name not in random]:
-            allowed = (
-                f"must be an input with a distribution ({', '.join(random) or 'there is none'})"
-            )
-            problem = f"{unknown[0]!r} is not random: {allowed}{suggestion(unknown[0], random)}"
+        if unknown := {a, b} - random.keys():
+            name = a if a in unknown else b
+            known = ", ".join(random) or "there is none"
+            problem = f"{name!r} is not random: must be an input with a distribution ({known})"
+            problem += suggestion(name, random)
         elif a == b or not is_real(value) or not -1.0 < value < 1.0:
             problem = (
                 f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"
@@ -530,8 +525,7 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
             problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"
         if problem:
             raise section_error(path, "correlation", a, problem)
-        n = names.index(a)
-        m = names.index(b)
+        n, m = map(names.index, (a, b))
         matrix[n, m] = matrix[m, n] = value
     try:
         mixing: Any = np.linalg.cholesky(matrix) if names else None

@@ -6,9 +6,6 @@ scrambled Sobol sequence; scipy.stats.sobol_indices, which has them too, fails f
 (SciPy 1.17).  The cost of a base point is one motion for every uncertain input and two more.
 """
 
-from dataclasses import replace
-
-import msgspec
 import numpy as np
 
 from ..core import (
@@ -16,12 +13,14 @@ from ..core import (
     Dataset,
     Floats,
     MotionStatus,
+    Names,
     NDArray,
     ParameterError,
     check_bool,
     check_integer,
     column_name,
     described_error,
+    names_ending,
     run_blocks,
     unit_of,
 )
@@ -29,7 +28,7 @@ from ..motion import QUANTITIES, column_attributes, provenance
 from ..sampling import points
 from .run_store import roll_inputs, warn_of_materials
 from .runfile import Run
-from .uncertain_inputs import Inputs, inputs_in
+from .uncertain_inputs import Columns, Inputs, inputs_in
 
 #: Level of the confidence intervals.
 CONFIDENCE = 0.95
@@ -116,19 +115,14 @@ def sobol_indices(
 
     names = _independent_inputs(run.inputs)
     progress = check_bool("progress", progress)
-    base = (
-        1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
-    )  # Sobol's sequence is even over powers of two only
-    motions = base * (len(names) + 2)
+    # Sobol's sequence is even over powers of two only
+    base = 1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
     summaries = tuple(dict.fromkeys(run.settings.summaries))
-    settings = msgspec.structs.replace(
-        run.settings, n=motions, keep="summaries", summaries=summaries
-    )
-    run = replace(run, settings=settings)
+    run = run._with_settings(n=base * (len(names) + 2), keep="summaries", summaries=summaries)
+    settings = run.settings
     warn_of_materials(run)
-    outcomes, status = _outcomes(
-        run, _points(len(names), base, run.settings.seed), threads, progress
-    )
+    cube = _points(len(names), base, settings.seed)
+    outcomes, status = _outcomes(run, cube, threads, progress)
     refused = []
     data = {}
     for name, values in outcomes.items():
@@ -137,16 +131,14 @@ def sobol_indices(
         noise = settings.rtol * np.abs(values).max(where=np.isfinite(values), initial=0.0)
         # a row for each t: motions in the order of _points, base points of A, of B, of each mixture
         indices, reasons = zip(
-            *(_indices(row.reshape(-1, base), noise, settings.seed) for row in values), strict=True
+            *(_indices(row.reshape(-1, base), noise, settings.seed) for row in values)
         )
         times = [f" at t = {t:g}" for t in run.t] if over else [""]
-        refused += [
-            f"{name}{time} ({why})" for time, why in zip(times, reasons, strict=True) if why
-        ]
+        refused += [f"{name}{time} ({why})" for time, why in zip(times, reasons) if why]
         if not np.isfinite(indices).any():
             continue
         meaning = QUANTITIES[name].about(run.si)["long_name"]
-        for (key, text), rows in zip(_INDICES.items(), np.stack(indices, axis=1), strict=True):
+        for (key, text), rows in zip(_INDICES.items(), np.stack(indices, axis=1)):
             attrs = {"long_name": f"{text} of: {meaning}", "units": "1"}
             data[f"{name}_{key}"] = (*over, "input"), rows if over else rows[0], attrs
     if not data:
@@ -160,10 +152,8 @@ def sobol_indices(
         "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
     }
     attrs = about(run) | provenance("Sobol indices of motions of a viscoelastic cylinder")
-    # blocks are those of the run, not of these motions
-    for of_blocks in ("motions_a_block", "blocks"):
-        del attrs[of_blocks]
-    ended = zip(*np.unique(status, return_counts=True), strict=True)
+    del attrs["motions_a_block"], attrs["blocks"]  # those of the run, not of these motions
+    ended = zip(*np.unique(status, return_counts=True))
     return xr.Dataset(data, coordinates, attrs).assign_attrs(
         design="Saltelli's, on a scrambled Sobol sequence",
         asked_base_points=n,
@@ -175,7 +165,7 @@ def sobol_indices(
     )
 
 
-def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
+def _independent_inputs(inputs: Inputs) -> Names:
     """Return the names of the uncertain inputs of a run, if Sobol indices are defined for them.
 
     inputs: :class:`Inputs` of the run.
@@ -190,18 +180,16 @@ def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
     if inputs.correlated:
         allowed = "left out: Sobol indices are defined for independent inputs only"
         raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
-    sections = {
-        number.name: f"[{number.section}] {number.name}" for number in inputs_in(inputs.content)
-    }
     for file, columns in inputs.joint.items():
         if len(columns) > 1:
-            allowed = (
-                "distributions, or columns of different files: Sobol indices are defined for "
-                "independent inputs only"
+            names = (
+                f"[{number.section}] {number.name}"
+                for number in inputs_in(inputs.content)
+                if number.name in columns
             )
-            raise ParameterError(
-                ", ".join(map(sections.__getitem__, columns)), f"rows of {file}", allowed
-            )
+            allowed = "distributions, or columns of different files: Sobol indices are defined for "
+            allowed += "independent inputs only"
+            raise ParameterError(", ".join(names), f"rows of {file}", allowed)
     return inputs.uncertain
 
 
@@ -219,16 +207,14 @@ def _points(count: int, base: int, seed: int) -> Floats:
     from B.
     """
     # halves of the coordinates of one sequence, so that A and B are even together
-    A, B = np.split(
-        points("sobol", seed, n=base, dimensions=2 * count, start=0, stop=base, block=0), 2
-    )
-    mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
+    A, B = np.split(points("sobol", seed, base, 2 * count, start=0, stop=base, block=0), 2)
+    mixed = [np.where(np.arange(count)[:, None] == n, B, A) for n in range(count)]
     return np.hstack([A, B, *mixed])
 
 
 def _outcomes(
     run: Run, cube: Floats, threads: int | None, progress: bool
-) -> tuple[dict[str, Floats], NDArray[np.int8]]:
+) -> tuple[Columns, NDArray[np.int8]]:
     """Roll all motions at points of the unit cube, block by block.
 
     run: :class:`runs.Run`, whose ``settings.summaries`` name the quantities, each once; inputs, t
@@ -244,7 +230,7 @@ def _outcomes(
     the units of the run, NaN where a motion does not have it; status of each motion, a code of
     :class:`MotionStatus` (0 DONE, 1 RESTED, 2 to 6 stopped before), (motion,), int8).
     """
-    motions = cube.shape[1]
+    motions = run.settings.n
     times = {
         name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries
     }
@@ -272,13 +258,8 @@ def _outcomes(
                 row[start:stop] = QUANTITIES[name].values(rolled, k)
 
     # one block at a time, its motions on all threads: a flow map is then made once
-    run_blocks(
-        work,
-        motions,
-        min(_BLOCK, run.block),
-        threads=1,
-        progress="sensitivity" if progress else None,
-    )
+    title = "sensitivity" if progress else None
+    run_blocks(work, motions, min(_BLOCK, run.block), threads=1, progress=title)
     return outcomes, status
 
 
@@ -323,12 +304,10 @@ def _estimated(values: Floats) -> Floats:
     values: outcomes, (2 + inputs, base points), as in :func:`_indices`, finite.  Where those of A
         and B are all equal the indices are NaN or infinite.
     """
-    A, B, *others = values - values[:2].mean()
-    mixed = np.array(others)
-    return (
-        np.array([(B * (mixed - A)).mean(axis=1), 0.5 * ((mixed - A) ** 2).mean(axis=1)])
-        / values[:2].var()
-    )
+    A, B, *mixed = values - values[:2].mean()
+    change = np.array(mixed) - A
+    indices = np.array([(B * change).mean(axis=1), 0.5 * (change**2).mean(axis=1)])
+    return indices / values[:2].var()
 
 
 def table(indices: Dataset) -> DataFrame:
@@ -346,15 +325,14 @@ def table(indices: Dataset) -> DataFrame:
     import pandas as pd
 
     tables = []
-    for name in (str(key).removesuffix("_S1") for key in indices if str(key).endswith("_S1")):
+    for name in names_ending(indices, "_S1"):
         frame = (
             pd.DataFrame({key: indices[f"{name}_{key}"].to_series() for key in _INDICES})
             .dropna()
             .reset_index()
         )
         frame.insert(0, "quantity", name)
-        over = ["t"] * ("t" in frame)  # a quantity of one number per motion has no such column
-        tables.append(
-            frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable")
-        )
+        # a quantity of one number per motion has no column t
+        keys = {"t": True, "ST": False} if "t" in frame else {"ST": False}
+        tables.append(frame.sort_values([*keys], ascending=[*keys.values()], kind="stable"))
     return pd.concat(tables).rename(columns={"t": column_name("t", unit_of(indices["t"].attrs))})

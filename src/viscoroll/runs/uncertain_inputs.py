@@ -19,6 +19,8 @@ import numpy as np
 from ..core import (
     FileError,
     Floats,
+    Named,
+    Names,
     ParameterError,
     check_keys,
     import_extra,
@@ -34,6 +36,8 @@ from .run_rollers import RUN_SECTIONS
 
 # --- Uncertain inputs ---
 
+#: Name of an input -> its values, one for each motion, or its column in a file.
+Columns = dict[str, Floats]
 #: Word in place of a time of a drive: the same time again, so that the value jumps.
 SAME = "same"
 #: Share of the draws at either end that a flow map of the start speeds does not reach: those few
@@ -85,18 +89,17 @@ class Distribution:
         NaN of scipy is passed on.
         """
         law = self.law
-        if (self.low, self.high) == law.support():
+        ends = self.low, self.high
+        if ends == law.support():
             return law.ppf(u)
-        # from above: survival at the upper end is the smaller one, and 1 - u counts from there
-        upper = law.cdf(self.low) > 0.5
-        below, inverse = (law.sf, law.isf) if upper else (law.cdf, law.ppf)
-        first, last = (
-            below(end) for end in ((self.high, self.low) if upper else (self.low, self.high))
-        )
-        # ppf and cdf are inverse to rounding only
-        return np.clip(
-            inverse(first + ((1.0 - u) if upper else u) * (last - first)), self.low, self.high
-        )
+        if law.cdf(self.low) > 0.5:
+            # from above: survival at the upper end is the smaller one, and 1 - u counts from there
+            last, first = map(law.sf, ends)
+            quantiles = law.isf(first + (1.0 - u) * (last - first))
+        else:
+            first, last = map(law.cdf, ends)
+            quantiles = law.ppf(first + u * (last - first))
+        return np.clip(quantiles, *ends)  # ppf and cdf are inverse to rounding only
 
 
 @dataclass(frozen=True)
@@ -115,31 +118,36 @@ class Inputs:
         correlated); None without correlation.
     """
 
-    content: dict[str, Any]
+    content: Named
     random: dict[str, Distribution] = field(default_factory=dict)
-    joint: dict[str, dict[str, Floats]] = field(default_factory=dict)
-    correlated: tuple[str, ...] = ()
+    joint: dict[str, Columns] = field(default_factory=dict)
+    correlated: Names = ()
     mixing: Floats | None = None
 
     @property
-    def dimensions(self) -> tuple[str, ...]:
+    def dimensions(self) -> Names:
         """Names of the dimensions of the cube: distributions, then files."""
         return (*self.random, *self.joint)
 
     @property
-    def uncertain(self) -> tuple[str, ...]:
-        """Names of the inputs."""
-        return (*self.random, *(name for columns in self.joint.values() for name in columns))
+    def columns(self) -> Columns:
+        """Columns of all files."""
+        return {name: columns[name] for columns in self.joint.values() for name in columns}
 
     @property
-    def medians(self) -> dict[str, Any]:
+    def uncertain(self) -> Names:
+        """Names of the inputs."""
+        return (*self.random, *self.columns)
+
+    @property
+    def medians(self) -> Named:
         """Median of each input, name -> float in the unit of the file; of N rows of a file the row
         floor(N/2).
         """
         middle = self.values(np.full((len(self.dimensions), 1), 0.5))
         return {name: values.item() for name, values in middle.items()}
 
-    def values(self, points: Floats) -> dict[str, Floats]:
+    def values(self, points: Floats) -> Columns:
         """Map points of the unit cube to the values of all inputs.
 
         Under the copula the coordinates of correlated inputs are first replaced by those of normal
@@ -157,11 +165,9 @@ class Inputs:
 
             normal = [ndtri(rows[name]) for name in self.correlated]
             # a sum in a fixed order, so that bits do not depend on the number of points
-            mixed = sum(
-                part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal, strict=True)
-            )
+            mixed = sum(part[:, None] * row for part, row in zip(self.mixing.T, normal))
             # 0 or 1, which ndtr may round to, would be infinite quantiles
-            rows |= dict(zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST), strict=True))
+            rows |= zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST))
         values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
         for file, columns in self.joint.items():
             size = next(iter(columns.values())).size
@@ -173,7 +179,7 @@ class Inputs:
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
         """Return the ends of the draws of an input.
 
-        name: name of the input; another name raises StopIteration.
+        name: name of the input; another name raises KeyError.
         low, high: probabilities in (0, 1) of the ends of a distribution, by default the smallest
             and the largest coordinate that a point has, 2^-54 and 1 - 2^-53; ignored for a column
             of a file.
@@ -182,10 +188,10 @@ class Inputs:
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
-        column = next(columns[name] for columns in self.joint.values() if name in columns)
+        column = self.columns[name]
         return np.array([column.min(), column.max()])
 
-    def corners(self) -> dict[str, Floats]:
+    def corners(self) -> Columns:
         """Return combinations of extreme inputs, for which the checks of a run file make motions.
 
         With k inputs that are distributions or the only column of their file there are n = 2
@@ -203,8 +209,7 @@ class Inputs:
         # last one none; then all of them exchanged
         at_low = np.eye(len(names), len(names) + 1, dtype=bool)
         ends = {
-            name: self.ends(name)[np.r_[row, ~row].astype(int)]
-            for name, row in zip(names, at_low, strict=True)
+            name: self.ends(name)[np.r_[row, ~row].astype(int)] for name, row in zip(names, at_low)
         }
         return self.medians | ends
 
@@ -223,7 +228,7 @@ class Inputs:
             np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max()
         )
 
-    def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
+    def filled(self, values: Mapping[str, Any]) -> Named:
         """Return the sections of the run file with values in place of the inputs, and omega0 in
         that of "rolling".
 
@@ -264,7 +269,7 @@ def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
         return {key: _fill_in(member, values) for key, member in part.items()}
     if not isinstance(part, list):
         return part
-    numbers: list[Any] = []
+    numbers: list = []
     for member in part:
         # the number before, itself perhaps that of an input
         numbers.append(numbers[-1] if numbers and member == SAME else _fill_in(member, values))
@@ -278,18 +283,17 @@ def inputs_in(part: Any) -> list[Input]:
     part: a section, table, list, number or any other value; what is neither table, list nor input
     gives an empty list.
     """
-    members = part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
-    return (
-        [part]
-        if isinstance(part, Input)
-        else [found for member in members for found in inputs_in(member)]
-    )
+    if isinstance(part, Input):
+        return [part]
+    members = [*part.values()] if isinstance(part, dict) else part
+    if not isinstance(members, list):
+        return []
+    return [found for member in members for found in inputs_in(member)]
 
 
 # --- Sections of a run file -> Inputs ---
 
-#: Section -> first letters of the names of its inputs; those of the other sections have none.
-PREFIXES = {"base": "base_", "drive": "drive_"}
+
 #: Sections that may have uncertain numbers.
 _SECTIONS = (*SCHEMA, *SECTIONS, *RUN_SECTIONS)
 #: Key -> the word for it in the name of an input, if that is another; "" is left out.
@@ -300,7 +304,7 @@ _UNCERTAIN_IN_MATERIAL = ("E", "nu", "prony", "creep", "temperature", "thickness
 _KEYS_OF_INPUT = {"distribution", "file", "column"}
 
 
-def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
+def inputs_of(path: Path, content: Named) -> Inputs:
     """Collect the uncertain numbers of a run file; files of samples are read.
 
     path: path of the run file, to which the paths of samples are relative.
@@ -328,7 +332,7 @@ class _Reader:
     path: Path
     si: bool
     random: dict[str, Distribution] = field(default_factory=dict)
-    joint: dict[str, dict[str, Floats]] = field(default_factory=dict)
+    joint: dict[str, Columns] = field(default_factory=dict)
     files: dict[Path, str] = field(default_factory=dict)
 
     def section(self, name: str, section: Any) -> Any:
@@ -356,7 +360,7 @@ class _Reader:
             for key, value in section.items()
         }
 
-    def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
+    def part(self, value: Any, section: str, key: str, words: Names) -> Any:
         """Return a value of the file with an :class:`Input` in place of each uncertain number.
 
         A table with a key distribution, file or column is an uncertain number; it is collected in
@@ -391,9 +395,12 @@ class _Reader:
                 name: self.part(member, f"{section}.{key}", name, (*words, name))
                 for name, member in value.items()
             }
-        # the section of a number within a table is "drive.torque": its first word has the prefix
+        # the section of a number within a table is "drive.torque"
+        owner = section.partition(".")[0]
+        if owner in ("base", "drive"):  # whose inputs are called by it
+            words = (owner, *words)
         name = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
-        number = Input(PREFIXES.get(section.partition(".")[0], "") + name, section, key)
+        number = Input(name, section, key)
         if "distribution" in value:
             self.random[number.name] = self.distribution(number, value)
         else:
@@ -409,7 +416,7 @@ class _Reader:
         return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
 
     @np.errstate(all="ignore")  # scipy may overflow for parameters that are refused here
-    def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
+    def distribution(self, number: Input, table: Named) -> Distribution:
         """Return the distribution of an uncertain number, truncated if the file says so.
 
         number: the uncertain number, for errors.
@@ -421,20 +428,14 @@ class _Reader:
         NaN, and for an interval that is empty, a point, or of zero probability.
         """
         law = self.frozen_law(number, table)
-        low, high = (float(end) for end in law.support())
+        low, high = law.support()
         cut = table.get("truncate", [-math.inf, math.inf])
-        if not (
-            isinstance(cut, list)
-            and len(cut) == 2
-            and all(is_real(end) and end == end for end in cut)
-        ):
-            raise self.fault(
-                number,
-                f"truncate = {cut!r:.40}: must be [low, high]; inf or -inf for an end without "
-                "limit",
-            )
-        low = max(low, float(cut[0]))
-        high = min(high, float(cut[1]))
+        numbers = isinstance(cut, list) and all(is_real(end) and end == end for end in cut)
+        if not numbers or len(cut) != 2:
+            allowed = "[low, high]; inf or -inf for an end without limit"
+            raise self.fault(number, f"truncate = {cut!r:.40}: must be {allowed}")
+        low = max(float(low), float(cut[0]))
+        high = min(float(high), float(cut[1]))
         # both differences are the probability; in the upper tail that of cdf rounds to 0, in the
         # lower one that of sf
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
@@ -444,7 +445,7 @@ class _Reader:
             raise self.fault(number, f"{interval}: must have low < high and a probability above 0")
         return Distribution(law, low, high)
 
-    def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
+    def frozen_law(self, number: Input, table: Named) -> Any:
         """Return the frozen distribution of scipy.stats that a table names, with its parameters,
         not truncated.
 
@@ -459,26 +460,20 @@ class _Reader:
         from scipy import stats
 
         name = table["distribution"]
-        law = getattr(stats, name, None) if isinstance(name, str) else None
-        if not isinstance(law, stats.rv_continuous):
-            near = suggestion(
-                str(name),
-                [
-                    key
-                    for key, value in vars(stats).items()
-                    if isinstance(value, stats.rv_continuous)
-                ],
-            )
+        laws = {
+            key: law for key, law in vars(stats).items() if isinstance(law, stats.rv_continuous)
+        }
+        if not isinstance(name, str) or name not in laws:
+            near = suggestion(str(name), laws)
             raise self.fault(
                 number,
                 f"distribution {name!r:.40} is not a continuous distribution of scipy.stats{near}",
             )
+        law = laws[name]
         shapes = law.shapes.split(", ") if law.shapes else []
-        keys = ("distribution", *shapes, "loc", "scale", "truncate")
-        check_keys(self.path, f"{number.section}.{number.key}", table, keys)
-        parameters = {
-            key: value for key, value in table.items() if key not in ("distribution", "truncate")
-        }
+        allowed = ("distribution", *shapes, "loc", "scale", "truncate")
+        check_keys(self.path, f"{number.section}.{number.key}", table, allowed)
+        parameters = {key: table[key] for key in allowed[1:-1] if key in table}
         for key, value in parameters.items():
             if not is_real(value) or not math.isfinite(value):
                 raise self.fault(
@@ -494,7 +489,7 @@ class _Reader:
             )
         return frozen
 
-    def add_column(self, number: Input, table: dict[str, Any]) -> None:
+    def add_column(self, number: Input, table: Named) -> None:
         """Read the column of a file that is the sample of an uncertain number, and collect it in
         ``joint``.
 
@@ -528,15 +523,14 @@ class _Reader:
                 path, column, si_unit(number.key) if self.si and "." not in number.section else "1"
             )
         except (OSError, ValueError, KeyError, FileError) as error:
-            problem = (
-                "the file does not exist"
-                if not path.exists()
-                else "the file has no column of this name"
-                if isinstance(error, KeyError)
-                else getattr(error, "problem", error)
-                if type(error) in (FileError, ParameterError, ValueError)
-                else f"the file is damaged, or is not a {path.suffix} file"
-            )
+            if not path.exists():
+                problem: Any = "the file does not exist"
+            elif isinstance(error, KeyError):
+                problem = "the file has no column of this name"
+            elif type(error) in (FileError, ParameterError, ValueError):
+                problem = getattr(error, "problem", error)
+            else:
+                problem = f"the file is damaged, or is not a {path.suffix} file"
             raise self.fault(number, f"{where}: {problem}") from error
         # one entry for each file, however it is spelt
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})

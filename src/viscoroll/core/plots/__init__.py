@@ -26,16 +26,12 @@ LINES: tuple[dict[str, Any], ...] = (
     {"color": "#c8642a", "linestyle": "-."},
     {"color": "#6aa84f", "linestyle": (0, (1, 1.2))},
 )
-#: Height above quantile bands that their legend needs, as a part of the height of the bands: that
-#: of three lines.
-_ABOVE_BANDS = 0.5
 #: Greys of quantile bands, from the widest.
 _GREYS = ("0.85", "0.65", "0.45")
 #: Width of every figure, inches.  On a screen 390 pixels wide the smallest text, of 8.3 points, is
 #: then 7 pixels high.
 WIDTH = 6.4
-#: Characters in a line of the words of an axis: two panels stand beside each other.
-_LABEL_WIDTH = 26
+
 #: Style of lines of reference, such as zero.
 THIN = {"color": "0.7", "linewidth": 0.6}
 
@@ -62,7 +58,7 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[Figure, list[Any]]:
+def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[Figure, list]:
     """Make a figure with several axes of one size, two in a row.
 
     title: text on top of the figure.
@@ -97,22 +93,21 @@ def plot_measured_range(
     if band is None:
         return axes.plot(x, y, **line)[0]
     outside = (np.abs(x) < band[0]) | (np.abs(x) > band[1])
-    solid = np.where(outside, np.nan, y)
     # The dashed curve begins at the last measured point: neighbours of points outside belong to it.
     dashed = outside.copy()
     dashed[1:] |= outside[:-1]
     dashed[:-1] |= outside[1:]
-    (drawn,) = axes.plot(x, solid, **line | {"linestyle": "-"})
+    (drawn,) = axes.plot(x, np.where(outside, np.nan, y), **line | {"linestyle": "-"})
     axes.plot(x, np.where(dashed, y, np.nan), **line | {"linestyle": "--", "label": None})
     return drawn
 
 
-def has_numbers(x: NDArray[Any]) -> bool:
+def has_numbers(x: NDArray) -> bool:
     """Whether an array has real numbers, not texts, dates or other objects."""
     return x.dtype.kind in "iuf"
 
 
-def spaced_by_factors(x: NDArray[Any]) -> bool:
+def spaced_by_factors(x: NDArray) -> bool:
     """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a
     linear one.
 
@@ -167,17 +162,18 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
     levels: probabilities, 0 to 1, ascending, (k,), k >= 0.
     values: quantiles, (k, n), a row for each level; where they are NaN nothing is drawn.
     """
-    for n in range(levels.size // 2):
+    middle = levels.size // 2
+    for n in range(middle):
         text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
-        grey = _GREYS[min(n, len(_GREYS) - 1)]
+        grey = _GREYS[min(n, 2)]
         axes.fill_between(t, values[n], values[-1 - n], color=grey, linewidth=0.0, label=text)
     if levels.size % 2:
-        n = levels.size // 2
-        axes.plot(t, values[n], ".-", color="black", label=f"{100 * levels[n]:g} %")
+        axes.plot(t, values[middle], ".-", color="black", label=f"{100 * levels[middle]:g} %")
     zero_line(axes)
     if levels.size:
         low, high = axes.get_ylim()
-        axes.set_ylim(low, high + _ABOVE_BANDS * (high - low))
+        # the three lines of the legend are as high as half of the bands
+        axes.set_ylim(low, high + 0.5 * (high - low))
         small_legend(axes, loc="upper right")
 
 
@@ -203,7 +199,8 @@ def variable_label(variable: Any) -> str:
     """
     label = symbol_label(variable)
     name = str(variable.name).replace("_", " ")
-    words = fill(str(variable.attrs.get("long_name", "")).partition(",")[0], _LABEL_WIDTH)
+    # 26 characters in a line, since two panels stand beside each other
+    words = fill(str(variable.attrs.get("long_name", "")).partition(",")[0], 26)
     return (
         label.replace(name, words, 1)
         if words and label.startswith(name)
@@ -273,26 +270,21 @@ _FIELDS = (
 )
 #: Fields that are left out where they are equal, each half of M.
 _PARTS = ("M_half_space", "M_cylinder")
-#: Largest number of fields in a figure.
-_MAX_PANELS = 6
+
 #: Codes of the regimes in which the contact slides: full slip, and a wheel that is locked (at rest
 #: it is held).
 _SLIDING = (0, 3)
 #: Fastest speed of an axis in m/s: no roller is faster, though equilibria are, where shear waves
 #: forbid them.
 _FASTEST = 100.0
-#: Grey of sliding in a motion.
-_SHADE = "0.87"
-#: An output nearer to a jump than this fraction of the last time has the value of one of its sides.
-_JUMP_RTOL = 1e-9
 
 
 def varied_axes(data: Dataset) -> list[str]:
     """Return the names of the axes of several values that the shown fields of ``data`` depend on,
     in its order.
     """
-    dims = {dim for name in _shown_fields(data) for dim in data[name].dims}
-    return [str(dim) for dim, size in data.sizes.items() if size > 1 and dim in dims]
+    shown = data[_shown_fields(data)]
+    return [str(dim) for dim, size in data.sizes.items() if size > 1 and dim in shown.dims]
 
 
 def field_curves(data: Dataset) -> Figure:
@@ -304,9 +296,8 @@ def field_curves(data: Dataset) -> Figure:
         such axis there are curves at its first, its last and two evenly spaced indices between.
         Third and further axes are at their middle, which the title states.  Over V curves are
         dashed outside the measured band, if the attribute :data:`.scale.MEASURED` states it.
-    Returns the :class:`matplotlib.figure.Figure`, with the first :data:`_MAX_PANELS` of those
-    fields that depend on the first axis.  Its axis is logarithmic if the values are spaced by
-    factors.
+    Returns the :class:`matplotlib.figure.Figure`, with the first six of those fields that depend on
+    the first axis.  Its axis is logarithmic if the values are spaced by factors.
     """
     data = _in_millimetres(data.squeeze(drop=True), "length")
     first, *others = varied_axes(data)
@@ -318,15 +309,15 @@ def field_curves(data: Dataset) -> Figure:
         middle = data.sizes[name] // 2
         title += f"{', ' if n else ', at '}{_value_label(data, name, middle)}"
         data = data.isel({name: middle})
-    names = [name for name in _shown_fields(data) if first in data[name].dims][:_MAX_PANELS]
+    names = [name for name in _shown_fields(data) if first in data[name].dims][:6]
     figure, panels = new_panels(title, len(names), 2.2, sharex=True)
     x = data[first].values
     second = others[:1]
     x = x.astype(str) if x.dtype.kind in "Om" else x  # matplotlib places texts evenly
     # of fewer than four values some are equal, which np.unique below removes
     indices = np.linspace(0, data.sizes[second[0]] - 1, len(LINES)).astype(int) if second else [0]
-    for name, axes in zip(names, panels, strict=True):
-        for index, line in zip(np.unique(indices).tolist(), LINES, strict=False):
+    for name, axes in zip(names, panels):
+        for index, line in zip(np.unique(indices).tolist(), LINES):
             values = data[name].isel(dict.fromkeys(second, index), missing_dims="ignore").values
             label = _value_label(data, second[0], index) if second else None
             plot_measured_range(axes, x, values, band, label=label, **line)
@@ -358,11 +349,11 @@ def stresses(data: Dataset) -> Figure:
     # first axis along which x varies; of the other axes the first state is drawn
     along = next((dim for n, dim in enumerate(x.dims) if np.diff(x.values, axis=n).any()), None)
     data = data.isel(dict.fromkeys(set(data.dims) - {along}, 0))
-    for name, line in zip(names, LINES, strict=False):
+    for name, line in zip(names, LINES):
         axes.plot(data["x"].values, data[name].values, label=symbol_label(data[name]), **line)
     zero_line(axes)
-    labels = (variable_label(data[name]) for name in names)
-    axes.set(xlabel=variable_label(data["x"]), ylabel="\n".join(labels))
+    axes.set_xlabel(variable_label(x))
+    axes.set_ylabel("\n".join(variable_label(data[name]) for name in names))
     axes.legend(frameon=False)
     return figure
 
@@ -380,12 +371,12 @@ def equilibria(data: Dataset) -> Figure:
     differ by a factor of more than 100, their axis is logarithmic on both sides of a linear part
     between plus and minus the least magnitude.
     """
-    loads = (
-        name
-        for name in ("slope", "force", "torque")
-        if name in data and np.ptp(_finite(data[name])) > 0.0
-    )
-    load, shown = ("V", "temperature") if "temperature" in data else (next(loads, "force"), "V")
+    load, shown = "force", "V"
+    for name in ("torque", "force", "slope"):  # the last one that varies is shown
+        if name in data and np.ptp(_finite(data[name])) > 0.0:
+            load = name
+    if "temperature" in data:
+        load, shown = "V", "temperature"
     figure, axes = new_figure("Steady rolling: stable (filled) and unstable (open)")
     x, y, stable = (
         data[name].broadcast_like(data["V"]).values.ravel() for name in (load, shown, "stable")
@@ -434,11 +425,11 @@ def motion(data: Dataset) -> Figure:
     # zeros at both ends close each interval: (first time that slides, first one after it), indices
     slips = np.concatenate(([0], data["regime"].isin(_SLIDING).values, [0]))
     ends = np.flatnonzero(np.diff(slips)).reshape(-1, 2)
-    for axes, names in zip(grid.flat, rows, strict=True):
-        for name, line in zip(names, LINES, strict=False):
+    for axes, names in zip(grid.flat, rows):
+        for name, line in zip(names, LINES):
             axes.plot(*_add_corners(data, name), label=symbol_label(data[name]), **line)
         for start, stop in ends.tolist():
-            axes.axvspan(t[start], t[min(stop, t.size - 1)], color=_SHADE, linewidth=0.0, zorder=0)
+            axes.axvspan(t[start], t[min(stop, t.size - 1)], color="0.87", linewidth=0.0, zorder=0)
         zero_line(axes)
         axes.set_ylabel("\n".join(variable_label(data[name]) for name in names))
         if len(names) > 1:
@@ -484,7 +475,8 @@ def _add_corners(data: Dataset, name: str) -> tuple[NDArray, NDArray]:
         return t, values
     corners, given = (data[key].values.ravel() for key in (f"drive_{name}_time", f"drive_{name}"))
     jumps = corners[1:][np.diff(corners) == 0.0]
-    kept = (np.abs(t[:, None] - jumps) > _JUMP_RTOL * t[-1]).all(axis=1)
+    # an output nearer to a jump than that has the value of one of its sides
+    kept = (np.abs(t[:, None] - jumps) > 1e-9 * t[-1]).all(axis=1)
     within = (corners >= t[0]) & (corners <= t[-1])
     if not kept.any():
         return t, values
@@ -501,14 +493,14 @@ def _shown_fields(data: Dataset) -> list[str]:
     """Return the fields of ``data`` that vary, else all of them; of like bodies without the parts
     of M, of limits by heat with the speed.
     """
-    like = set(_PARTS) <= set(data) and data["M_cylinder"].equals(data["M_half_space"])
-    fields = [name for name in _FIELDS if not (like and name in _PARTS)]
-    fields += ["V"] * ("runaway" in data)
+    if {*_PARTS} <= {*data} and data["M_cylinder"].equals(data["M_half_space"]):
+        data = data.drop_vars(_PARTS)
+    fields = [*_FIELDS] + ["V"] * ("runaway" in data)
     names = [name for name in fields if name in data.data_vars and data[name].ndim]
     return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
 
-def _finite(values: DataArray) -> NDArray[Any]:
+def _finite(values: DataArray) -> NDArray:
     """Return the finite ``values``, 0 if there is none."""
     found = values.values[np.isfinite(values.values)]
     return found if found.size else np.zeros(1)
@@ -563,8 +555,10 @@ def draw(data: Dataset) -> Figure:
         if applies:
             return figure(data)
     found = ", ".join(f"{size} of {name}" for name, size in data.sizes.items()) or "a single state"
-    sentence = (
+    raise ParameterError(
+        "plot",
+        found,
+        "a result over an axis",
         "a plot needs several speeds or creepages and a field such as Q or M, but this result has "
-        f"{found}"
+        f"{found}",
     )
-    raise ParameterError("plot", found, "a result over an axis", sentence)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import NDArray
 from ..errors import ParameterError
-from ..files import Dataset, Figure
+from ..files import Dataset, Figure, names_ending
 from . import (
     LINES,
     axis_label,
@@ -19,6 +19,7 @@ from . import (
     quantile_bands,
     small_legend,
     spaced_by_factors,
+    symbol_label,
     variable_label,
     with_unit,
     zero_line,
@@ -51,30 +52,28 @@ def master_curve(material: Any) -> Figure:
     times = material.T_ref * np.concatenate(
         [material.prony.T, material.prony.tau, [1.0][: not material.prony.E.size]]
     )
-    ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
-    t = np.logspace(*ends, _POINTS)
+    t = np.logspace(np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN, _POINTS)
     omega = 1.0 / t[::-1]  # reversed, so that it ascends
-    title = (material.name or "Material") + (
-        "; dashed: outside the measured band" if material.measured else ""
-    )
+    title = material.name or "Material"
+    band = inverse = None  # lowest and highest frequency, and the inverse of these
+    if record := material.measured:
+        title += "; dashed: outside the measured band"
+        band = record.low, record.high
+        inverse = 1.0 / record.high, 1.0 / record.low
     figure, (left, right) = new_figure(title, 1, 2, 3.4)
-    # None without a record, else lowest and highest frequency
-    band = material.measured and (material.measured.low, material.measured.high)
     left.set(xscale="log", yscale="log")
     curves = [(left, material.storage, "E'")]
     if material.prony.E.size:  # the loss of an elastic material is 0, which has no logarithm
         curves += [(left, material.loss, "E''"), (left.twinx(), material.tan_delta, "tan delta")]
     lines = [
         plot_measured_range(axes, omega, modulus(omega), band, **line, label=label)
-        for (axes, modulus, label), line in zip(curves, LINES, strict=False)
+        for (axes, modulus, label), line in zip(curves, LINES)
     ]
     for factor, *_ in curves[2:]:
         factor.set(ylabel="loss factor tan delta", ylim=(0.0, None))
     left.set(xlabel="angular frequency, rad/s", ylabel="storage and loss modulus, Pa")
     small_legend(left, handles=lines, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
-    plot_measured_range(
-        right, t, material.relaxation(t), band and (1.0 / band[1], 1.0 / band[0]), **LINES[0]
-    )
+    plot_measured_range(right, t, material.relaxation(t), inverse, **LINES[0])
     right.set(xlabel="time, s", ylabel="relaxation modulus E(t), Pa", xscale="log", yscale="log")
     return figure
 
@@ -95,9 +94,7 @@ def series_fit(fit: Any) -> Figure:
     figure, axes = new_figure(
         f"Prony series of {fit.prony.E.size} modes: misfit {fit.misfit_text(1)}"
     )
-    for symbol, values, curve, line in zip(
-        fit.symbols, columns, fit._moduli(fine), LINES, strict=False
-    ):
+    for symbol, values, curve, line in zip(fit.symbols, columns, fit._moduli(fine), LINES):
         axes.loglog(
             x, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=symbol
         )
@@ -132,14 +129,16 @@ def identification(fit: Any) -> Figure:
         sharex="col",
         height_ratios=(2.5, 1.0),
     )
-    for column, (top, bottom) in zip(shown, grid.T, strict=True):
+    for column, (top, bottom) in zip(shown, grid.T):
         record = fit.records[column.record]
         band = getattr(fit.predicted[column.record], column.quantity)
         *others, variable = record.COORDINATES  # as t, or V and delta: the last one is drawn over
         curves = bool(others)  # of several speeds, which one line cannot connect
         order = np.argsort(np.ravel(getattr(record, variable)), kind="stable")
-        arrays = getattr(record, variable), fit.sigma[str(column)], *band
-        x, sigma, value, low, high = (np.ravel(array)[order] for array in arrays)
+        x, sigma, value, low, high = (
+            np.ravel(array)[order]
+            for array in (getattr(record, variable), fit.sigma[str(column)], *band)
+        )
         (top.vlines if curves else top.fill_between)(
             x, low, high, color="0.7" if curves else "0.85"
         )
@@ -161,17 +160,9 @@ def identification(fit: Any) -> Figure:
 
 # --- Figures of many motions ---
 
-#: Largest number of bars of a histogram; fewer motions have two times the root of their number.
-_MOST_BARS = 80
-#: Fraction of the motions in one bar above which a histogram has a logarithmic axis of counts.
-_ONE_BAR = 0.9
 #: Fraction of the motions at each end that a histogram leaves out where they would make it much
 #: wider.
 _TAIL = 1e-3
-#: Widest axis that shows all motions, in widths of the axis without these tails.
-_WIDER = 2.0
-#: Smallest width of an axis that matplotlib draws.
-_MIN_WIDTH = 1e-280
 #: Largest number that matplotlib draws.
 _MAX_NUMBER = 1e300
 #: Width of a bar of a Sobol index.
@@ -201,18 +192,16 @@ def distributions(data: Dataset) -> Figure:
     data = data.sortby("quantile")
     about = data.attrs
     levels = data["quantile"].values
-    names = [
-        str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")
-    ]
+    names = names_ending(data, "_quantiles")
     design = f", {about['design']}, seed {about['seed']}" if "design" in about else ""
-    columns = 2 if any(f"{name}_histogram" in data for name in names) else 1
+    columns = 1 + any(f"{name}_histogram" in data for name in names)
     rows = max(len(names), 1)
     figure, grid = new_figure(
         f"{about['motions']:,} motions{design}", rows, columns, 2.4 * rows, squeeze=False
     )
-    for name, (left, *right) in zip(names, grid, strict=False):
+    for name, (left, *right) in zip(names, grid):
         variable = data[f"{name}_quantiles"]
-        label = axis_label(name, variable.attrs["units"], variable.attrs.get("symbol", ""))
+        label = symbol_label(variable.rename(name))
         if "t" in variable.dims and data.sizes["t"] > 1:
             quantile_bands(left, t := data["t"].values, levels, variable.values)
             left.set(xlabel=variable_label(data["t"]), ylabel=label, xlim=(t[0], t[-1]))
@@ -254,9 +243,8 @@ def _draw_histogram(axes: Any, data: Dataset, name: str) -> None:
         data[f"{name}_bin_low"].values, data[f"{name}_bin_high"].values, counts
     )
     axes.stairs(bars, edges, fill=True, color="0.6")
-    if (
-        bars.size > 1 and bars.max() > _ONE_BAR * bars.sum()
-    ):  # as at rest: the other bars would not be visible
+    # as at rest: the other bars would not be visible
+    if bars.size > 1 and bars.max() > 0.9 * bars.sum():
         axes.set_yscale("log")
     # parts of bins need not sum to a whole number by rounding
     if outside := int(counts.sum() - round(bars.sum())):
@@ -276,22 +264,21 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     which matplotlib does not draw, there is one bar, about the value, as wide as its magnitude but
     at least 1, with all motions of these bins.
     """
-    reached = np.cumsum(counts) / max(counts.sum(), 1)
+    reached = np.cumsum(counts)
     # first bins up to whose end there are a thousandth of the motions, and all but a thousandth
-    first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
-    last = min(last, counts.size - 1)
-    if high[-1] - low[0] <= _WIDER * (high[last] - low[first]):
+    first, last = np.searchsorted(reached / reached[-1], [_TAIL, 1.0 - _TAIL])
+    # the axis without the tails is at most half as wide, else it shows all motions
+    if high[-1] - low[0] <= 2.0 * (high[last] - low[first]):
         first = 0
         last = counts.size - 1
     start, end = np.clip([low[first], high[last]], -_MAX_NUMBER, _MAX_NUMBER)
-    if end - start < _MIN_WIDTH:
-        return start + max(1.0, abs(start)) * np.array([-0.5, 0.5]), counts[first : last + 1].sum(
-            keepdims=True
-        )
-    edges = np.linspace(start, end, min(_MOST_BARS, 2 * math.isqrt(counts.sum())) + 1)
+    if end - start < 1e-280:  # matplotlib draws no narrower axis
+        edges = start + max(1.0, abs(start)) * np.array([-0.5, 0.5])
+        return edges, counts[first : last + 1].sum(keepdims=True)
+    edges = np.linspace(start, end, min(80, 2 * math.isqrt(reached[-1])) + 1)
     # motions below each end, in the order low, high, low, high: within a bin they grow evenly, and
     # in a gap between bins not at all
-    below = np.append(0, np.repeat(np.cumsum(counts), 2))[:-1]
+    below = np.append(0, np.repeat(reached, 2))[:-1]
     return edges, np.diff(np.interp(edges, np.ravel([low, high], "F"), below))
 
 
@@ -308,21 +295,17 @@ def sobol_bars(indices: Dataset) -> Figure:
         and t; attributes confidence, in (0, 1), and motions, their number, for the title.
     Returns the :class:`matplotlib.figure.Figure`.
     """
-    names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
-    shown = [_last_indices(indices, name) for name in names]
+    shown = [_last_indices(indices, name) for name in names_ending(indices, "_S1")]
     # minus: descending
     order = np.argsort(-np.max([values["ST"] for _, values in shown], axis=0), kind="stable")
     inputs = [
         _INITIAL_SYMBOLS.get(name) or axis_label(name) for name in indices["input"].values[order]
     ]
-    percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
-    title = (
-        f"Sobol indices of {indices.attrs['motions']:,} motions, with {percent} confidence "
-        "intervals"
-    )
+    title = f"Sobol indices of {indices.attrs['motions']:,} motions, with "
+    title += f"{100.0 * indices.attrs['confidence']:.0f} % confidence intervals"
     figure, panels = new_panels(title, len(shown), 2.1, sharey=True)
     x = np.arange(order.size)
-    for axes, (text, values) in zip(panels, shown, strict=True):
+    for axes, (text, values) in zip(panels, shown):
         for key, (kind, grey, shift) in _SOBOL.items():
             axes.bar(
                 x + shift * _BAR_WIDTH,
