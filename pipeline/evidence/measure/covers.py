@@ -97,7 +97,7 @@ def compared(scene: vr.Scene, u: float, creeps: int) -> Compared:
     low, high = row.onsets()
     creep = 0.5 * (low + high) + _REACH * 0.5 * (high - low) * np.linspace(-1.0, 1.0, creeps)
     true = row.states(creep)
-    if not true.converged.all():
+    if true.status.any():
         raise vr.ConvergenceError(f"the coupled solution of {scene}")
     V = u / KAPPA
     found = vr.contact(scene, V, delta=0.5 * creep / KAPPA)

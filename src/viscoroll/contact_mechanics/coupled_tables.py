@@ -34,7 +34,7 @@ from ..kernels.numerics.jit import sources_digest
 from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade
 from ..materials import lock_array, several_tables_error
 from .assumptions import DUNDURS_LIMIT
-from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth, refuse_unsolved
+from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, growth
 
 # --- Tables of the coupled solution ---
 
@@ -94,7 +94,7 @@ def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
     if not times.size:
         return _ELASTIC
     # about the shortest relaxation time: retardation time times instantaneous compliance
-    shortest = min(min(body.T) * (1.0 - math.fsum(body.J)) for body in pair.bodies if body.T)
+    shortest = min(min(body.T) * body.instant for body in pair.bodies if body.T)
     low = _SPEED_RANGE[0] / times.max()
     high = _SPEED_RANGE[1] / shortest
     if count is None:
@@ -122,15 +122,15 @@ def tabulate(
     if check_integer("nodes of creepage", across, 9, 1001) % 2 == 0:
         raise ParameterError("nodes of creepage", across, "odd, as they are symmetric about 0")
     u = speed_nodes(pair, count)
-    t = np.arange(-(across // 2), across // 2 + 1) / (across // 2)  # 0 exactly in the middle
+    half = across // 2
+    t = np.arange(-half, half + 1) / half  # 0 exactly in the middle
     speeds = np.concatenate([[0.0], u, [math.inf]])
     # reduced creepages of the middle, the negative and positive onset of full slip, free rolling
     edges = np.empty((speeds.size, 4))
     fields = np.empty((speeds.size, across, len(FIELDS)))
     # all rows of elastic bodies are equal: only the first is solved
-    work = range(1) if u is _ELASTIC else range(speeds.size)
-
-    rows: list[Any] = [None] * len(work)
+    solved = 1 if u is _ELASTIC else speeds.size
+    rows: list[Any] = [None] * solved
 
     def begin(n: int, _: int) -> None:
         rows[n] = CoupledRow(pair, float(speeds[n]), mu)
@@ -140,13 +140,12 @@ def tabulate(
         edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
 
     # two passes: the states of a row need its middle creepage, which is smoothed over all rows
-    run_blocks(begin, len(work), 1, progress="coupled table: kernels" if progress else None)
-    edges[: len(work), 0] = _without_outliers(edges[: len(work), :3])
-    run_blocks(solve, len(work), 1, progress="coupled table: states" if progress else None)
-    edges[len(work) :] = edges[0]
-    fields[len(work) :] = fields[0]
-    arrays = {"u": u, "t": t, "edges": edges, "fields": fields}
-    made = CoupledRows(mu, **{name: lock_array(each) for name, each in arrays.items()})
+    run_blocks(begin, solved, 1, progress="coupled table: kernels" if progress else None)
+    edges[:solved, 0] = _without_outliers(edges[:solved, :3])
+    run_blocks(solve, solved, 1, progress="coupled table: states" if progress else None)
+    edges[solved:] = edges[0]
+    fields[solved:] = fields[0]
+    made = CoupledRows(mu, *map(lock_array, (u, t, edges, fields)))
     made.errors.update(measure_errors(made, pair))
     return made
 
@@ -185,15 +184,14 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
     slips there, else ``middle``.
     Raises ConvergenceError for a state that is not solved.
     """
-    mu = row.mu
     low, high = row.onsets()
     fields = _row_fields(row, middle, t)
     place = _free_place(t, fields[:, 0])
     free = middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
     if not 0.0 < row.u < math.inf:
-        state = _fields(row.states([free]), np.array([free]), row.u, mu)[0]
+        state = _fields(row, [free])[0]
         # kappa (Q delta - W_base - W_cylinder), from 2 kappa delta and works times 2 kappa
-        friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
+        friction = 0.5 * (row.mu * state[0] * free - state[6] - state[7])
         if friction <= _STICKS:
             # nothing slips there, and Q and M are 0 exactly: errors of the solution, up to 5e-5 of
             # mu P, are larger than all loads of a slow motion, which they would drive
@@ -222,19 +220,18 @@ def _row_fields(row: CoupledRow, middle: float, t: Floats) -> Floats:
     """
     low, high = row.onsets()
     creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
-    return _fields(row.states(creeps, t), creeps, row.u, row.mu)
+    return _fields(row, creeps, t)
 
 
-def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:
-    """Return the fields of states as one array.
+def _fields(row: CoupledRow, creeps: Any, at: Any = None) -> Floats:
+    """Return the fields of states of a row as one array.
 
-    states: the states, n of them.
-    creeps: reduced creepages 2 kappa delta, (n,), for the message.
-    u, mu: kappa |V| and coefficient of friction of all states, for the message.
+    row, creeps, at: as in :meth:`.CoupledRow.states`, n states.
     Returns (n, 8), columns in the order of :data:`FIELDS`, dimensionless.
     Raises ConvergenceError for the first state that is not solved.
     """
-    refuse_unsolved(states.status, creeps, u, mu)
+    states = row.states(creeps, at)
+    row.refuse_unsolved(states.status, creeps)
     return np.stack(states[: len(FIELDS)], axis=-1)
 
 
@@ -299,7 +296,7 @@ def measure_errors(
         # three within 2.5 % of the distance of the onsets, where the two splines meet
         near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
         creeps = np.concatenate([near, low + (high - low) * draw[3:]])
-        exact = _fields(row.states(creeps), creeps, u, rows.mu)
+        exact = _fields(row, creeps)
         found = look_up(rows.vector, np.full(creeps.size, u), creeps)
         worst[n] = np.abs(found - exact).max(axis=0)
 
@@ -373,7 +370,7 @@ def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
     if (found := load_kept(path, damaged, _read)) is None:
         found = tabulate(pair, mu, progress=not is_quiet() and sys.stderr.isatty())
         arrays = {name: getattr(found, name) for name in ("mu", *_ARRAYS)}
-        save_kept(path, _KEPT, arrays | {"errors": [found.errors[name] for name in FIELDS]})
+        save_kept(path, _KEPT, arrays | {"errors": list(found.errors.values())})
     return found
 
 

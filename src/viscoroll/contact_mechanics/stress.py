@@ -30,9 +30,16 @@ from ..core import (
     strip_labels,
 )
 from ..laws import CoverModes, half_line_rule, pressure, series_record
-from ..materials import layer_excess, local_coupling, total_series
-from .contact_table import ACCURACY, DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
-from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
+from ..materials import Cover, layer_excess, local_coupling, total_series
+from .contact_table import (
+    DEPTH,
+    FREE_CREEP,
+    complete,
+    computed_fields,
+    evaluate_contact,
+    refuse_overflow,
+)
+from .coupled_pair import CoupledPair, CoupledRow, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
@@ -56,7 +63,7 @@ def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
     Raises ConvergenceError where full slip has no solution.
     """
     row = CoupledRow(pair, u, mu)
-    refuse_unsolved(row.full_slip_status, np.array([-np.inf, np.inf]), u, mu)
+    row.refuse_unsolved(row.full_slip[:, 8], [-np.inf, np.inf])
     return row
 
 
@@ -85,9 +92,8 @@ class _States:
             "V": V,
             "omega" if creep_is_omega else "delta": creep,
         }
-        arrays = {name: np.asarray(value, float) for name, value in arrays.items()}
         self.shape = broadcast_shape(**arrays)
-        refuse_overflow(arrays["kappa"], arrays["V"])
+        refuse_overflow(scene.kappa, V)
         self.kappa, self.mu, self.V, given = (
             np.broadcast_to(each, self.shape).ravel() for each in arrays.values()
         )
@@ -105,9 +111,8 @@ class _States:
         with np.errstate(over="ignore"):
             self.creep = 2.0 * self.kappa * self.delta
         # states of one speed and friction share the onsets of full slip, which are solved once
-        _, row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
-        row = row.ravel()
-        self.groups = [np.flatnonzero(row == n) for n in range(int(row.max(initial=-1)) + 1)]
+        rows, row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
+        self.groups = [np.flatnonzero(row.ravel() == n) for n in range(rows.shape[1])]
 
 
 def evaluate_coupled(
@@ -127,7 +132,7 @@ def evaluate_coupled(
         raise ParameterError("fields", repr(DEPTH), allowed)
     states = _States(scene, V, creep, creep_is_omega)
     groups = states.groups
-    computed = tuple(dict.fromkeys(names))
+    computed = computed_fields(names, unlike=True)
     out = np.empty((len(computed), states.V.size))
 
     def work(row: int, _: int) -> None:
@@ -158,17 +163,15 @@ def _fields_of_row(
         vars(states)[name][which] for name in ("kappa", "mu", "V", "sign", "slip", "delta", "creep")
     )
     found = row.states(creep, apart=True)
-    refuse_unsolved(found.status, creep, row.u, row.mu)
+    row.refuse_unsolved(found.status, creep)
     # V over 2 kappa, as works are times 2 kappa; moments are times kappa
     half = 0.5 * np.abs(V) / kappa
     strain = found.work_base + found.work_cylinder
     low, high = row.onsets()
     with np.errstate(divide="ignore", over="ignore"):
-        zeta = 0.5 * found.lam / row.u if row.u > 0.0 else np.inf
+        zeta = 0.5 * found.lam / row.u
     fields = {
         "lam": found.lam,
-        "length": found.lam,
-        ACCURACY: found.lam,
         "epsilon": found.epsilon,
         "beta": found.beta,
         "zeta": zeta,
@@ -185,7 +188,7 @@ def _fields_of_row(
         "loss_half_space": half * (2.0 * found.kM_base + found.work_base),
         "loss_cylinder": half * (2.0 * found.kM_cylinder + found.work_cylinder),
     }
-    fields["M"] = fields["C_rr"] = fields["M_half_space"] + fields["M_cylinder"]
+    fields["M"] = fields["M_half_space"] + fields["M_cylinder"]
     if FREE_CREEP in names:
         fields[FREE_CREEP] = 0.5 * row.free_creep() / kappa
     if DEPTH in names:
@@ -213,8 +216,7 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
     q = transforms(profile.nodes, profile.q, k)
     total = 0.0
     for body in bodies:
-        instant, modes = body.at_speed(u)
-        compliance = wave_compliance(instant, modes, k)
+        compliance = wave_compliance(body, u, k)
         L, _, C = layer_transforms(body.nu, k * body.thickness)
         work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
         total += body.share * float(weights @ work.real) / np.pi
@@ -276,13 +278,12 @@ def coupled_stress(
     for n in range(states.V.size):
         row = coupled_row(pair, float(states.u[n]), float(states.mu[n]))
         found = row.profile(float(states.creep[n]))
-        refuse_unsolved([found.status], [states.creep[n]], row.u, row.mu)
         place = number == n
         sign = states.sign[n]
         # from the middle of the contact, of a motion along +x; for V < 0 all is mirrored
         y = sign * x[place] - found.shift
         # tractions are over E'/(4 pi kappa)
-        both = [np.interp(y, found.nodes, each, left=0.0, right=0.0) for each in (found.p, found.q)]
+        both = [np.interp(y, found.nodes, each) for each in (found.p, found.q)]
         out[:, place] = np.array(both) / (4.0 * np.pi * states.kappa[n])
         out[1, place] *= sign
     return out
@@ -290,6 +291,7 @@ def coupled_stress(
 
 # --- Pressure and shear stress along the contact ---
 
+Method = Literal["table", "coupled"]
 #: Points of a block: some milliseconds of work.
 _BLOCK = 1 << 15
 
@@ -301,7 +303,7 @@ def stress(
     V: Numbers,
     *,
     delta: Numbers,
-    method: Literal["table", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values: ...
 @overload
 def stress(
@@ -310,7 +312,7 @@ def stress(
     V: Numbers,
     *,
     omega: Numbers,
-    method: Literal["table", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values: ...
 def stress(
     roller: Roller,
@@ -319,7 +321,7 @@ def stress(
     *,
     delta: Numbers | None = None,
     omega: Numbers | None = None,
-    method: Literal["table", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values:
     """Compute pressure and shear stress along the contact of a rolling cylinder and its base, Eqs.
     (11)-(14).
@@ -399,8 +401,7 @@ def stress(
             speed = divide_by_unit("V", speed, scale["V"])
             creep = divide_by_unit(creep_name, creep, scale[creep_name])
     find = coupled_stress if method == "coupled" else _stress_of_law
-    by_omega = creep_name == "omega"
-    stresses = find(scene, x=position, V=speed, creep=creep, creep_is_omega=by_omega)
+    stresses = find(scene, x=position, V=speed, creep=creep, creep_is_omega=delta is None)
     stresses *= scale["p"]  # in place: a copy would double the memory of a large call
     found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
     place = "place along the contact, from the point below the axis" + ", divided by l0" * (
@@ -422,24 +423,17 @@ def _stress_of_law(
     Returns p and tau divided by E', rows of an array, each of the broadcast shape; p alone of a
     cover and of half-spaces whose states are those of the coupled solution.
     """
-    from ..kernels.law.modes import Points
+    from ..kernels.law.modes import Points, new_memory_weights, stress_loop
 
     rows = 1 if scene.tabulated or scene.cover is not None else 2
     scene = scene.uncoupled
-    lam, epsilon, beta, zeta, delta = evaluate_contact(
-        scene,
-        V,
-        creep=creep,
-        creep_is_omega=creep_is_omega,
-        names=("lam", "epsilon", "beta", "zeta", "delta"),
-    ).values()
+    names = "lam", "epsilon", "beta", "zeta", "delta"
+    found = evaluate_contact(scene, V, creep, creep_is_omega, names)
+    lam, epsilon, beta, zeta, delta = found.values()
     # For V < 0 positions are mirrored, and tau changes its sign.
     mirror = np.where(V < 0.0, -1.0, 1.0)
-    alpha = (
-        scene.alpha
-        if scene.material_array is None
-        else np.arange(len(scene.material_array), dtype=float)
-    )
+    many = scene.material_array
+    alpha = scene.alpha if many is None else np.arange(len(many), dtype=float)
     # first the fields of Points in their order; an array of materials has their indices for alpha
     state = (scene.kappa, scene.mu, lam, epsilon, beta, zeta, alpha)
     arrays = [np.asarray(value, float) for value in (x, *state, mirror, np.sign(delta) * mirror)]
@@ -453,14 +447,32 @@ def _stress_of_law(
     def work(start: int, stop: int) -> None:
         """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1 of the flattened
         broadcast shape, and write them into these elements of ``p`` and ``tau``; of a cover p
-        alone.
+        alone.  Consecutive points of one material are computed together.
         """
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
         points = Points(mirrored, *(read(start, stop) for read in readers))
-        _compute_stresses(
-            scene, read_alpha(start, stop), points=points, p=p[start:stop], tau=tau[start:stop]
-        )
+        alphas = read_alpha(start, stop)
+        material: Any = scene.material
+        ends: Any = [] if many is None else 1 + np.flatnonzero(np.diff(alphas))
+        for first, last in pairwise([0, *ends, stop - start]):
+            part = points._make(each[first:last] if each.size > 1 else each for each in points)
+            here = slice(start + first, start + last)
+            if many is not None:
+                material = many[int(alphas[min(first, alphas.size - 1)])]
+            if isinstance(material, Cover):
+                p[here] = _cover_pressure(material, part)
+                continue
+            series, own = series_record(alphas if material is None else total_series(material))
+            stress_loop(
+                series,
+                own,
+                new_memory_weights(series),
+                new_memory_weights(series),
+                part,
+                p[here],
+                tau[here],
+            )
         if scene.cover is None:  # else tau is not computed
             # + 0: outside the contact 0, not -0
             tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
@@ -469,56 +481,16 @@ def _stress_of_law(
     return out.reshape(2, *shape)[:rows]
 
 
-def _compute_stresses(
-    scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats
-) -> None:
-    """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
-
-    scene: dimensionless parameters of the roller, of which the material alone is read.
-    alpha: alphas, or for an array of materials their indices as floats, (n,) or (1,); for one
-        material not used.  Consecutive points of one material are computed together.
-    points: record :class:`.modes.Points`; its fields (position, kappa, mu, lam,
-        epsilon, beta, zeta) are (n,) or (1,), dimensionless, positions in the frame where V > 0,
-        divided by l0.
-    p, tau: pressure and size of the shear stress divided by E', (n,), written, 0 outside the
-        contact; of a cover tau is not written.
-    """
-    from ..kernels.law.modes import new_memory_weights, stress_loop
-
-    ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
-    for first, last in pairwise([0, *ends, p.size]):
-        part = points._make(each[first:last] if each.size > 1 else each for each in points)
-        index = int(alpha[min(first, alpha.size - 1)])  # of one of many materials
-        if scene.cover is not None:
-            p[first:last] = _cover_pressure(scene, index, part)
-            continue
-        material: Any = alpha if scene.series is None else scene.series
-        if scene.material_array is not None:
-            material = total_series(scene.material_array[index])
-        series, alphas = series_record(material)
-        stress_loop(
-            series,
-            alphas,
-            new_memory_weights(series),
-            new_memory_weights(series),
-            part,
-            p[first:last],
-            tau[first:last],
-        )
-
-
-def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
+def _cover_pressure(cover: Cover, points: Any) -> Floats:
     """Return p/E' at points on a cover, by one solve of the contact of the layer for each different
     state.
 
-    scene: dimensionless parameters of a roller with a cover.
-    index: index of the cover, if the scene has an array of covers; else not used.
+    cover: one :class:`.bodies.Cover`.
     points: record :class:`.modes.Points`, of which position (divided by l0, in the
         frame where V > 0), kappa, lam, epsilon and zeta (infinite at V = 0) are used, (n,) or (1,).
     Returns p/E', dimensionless, >= 0 to rounding, 0 outside the contact, a new array (n,), where n
     is the common length of these fields.
     """
-    cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = CoverModes(cover)
     x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
     states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
