@@ -508,21 +508,20 @@ class Cylinder(Methods):
         Where T_epsilon is an array, times differ relative to T_ref too, and the law is a creep
         series of one mode, J = 1 - T_sigma/T_epsilon and T = T_epsilon/T_ref, for each cylinder.
         """
-        law: Any = self.material if isinstance(self.material, LawTable) else None
-        if law is not None and isinstance(law.material, Cover):
-            self.pair.refuse_other_cover(law.material, self.l0)
-        if self._sls_parameters:
+        if isinstance(self.material, LawTable):
+            law: Any = self.material
+            if isinstance(law.material, Cover):
+                self.pair.refuse_other_cover(law.material, self.l0)
+        elif self._sls_parameters:
             # alpha = T_epsilon/T_sigma; one out of range is refused by the scene
             with np.errstate(all="ignore"):
                 law = self.T_epsilon / self.T_sigma
             if np.ndim(self.T_epsilon):
                 slow, fast = np.broadcast_arrays(self.T_epsilon, self.T_sigma)
                 law = Prony.creep(
-                    (1.0 - fast / slow)[:, np.newaxis],
-                    (slow / self.T_ref)[:, np.newaxis],
-                    alpha=law,
+                    (1.0 - fast / slow)[:, None], (slow / self.T_ref)[:, None], alpha=law
                 )
-        if law is None:
+        else:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
             if self.coupled is not False:
                 self.pair.refuse_coupled_ratios(law, DUNDURS_LIMIT)
@@ -556,19 +555,16 @@ class Cylinder(Methods):
         """Data of the bodies in SI units, from which validity and warnings are computed, a
         :class:`.BodyData`.
         """
-        # E to T_sigma may be arrays, of which no pair can be made: the shear modulus stands for it
-        pair, G = (
-            (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
-        )
         return BodyData(
-            pair=pair,
-            G=G,
+            # E to T_sigma may be arrays, of which no pair can be made
+            pair=None if self._sls_parameters else self.pair,
+            E=self.E,
+            nu=self.nu,
             R=self.R,
             l0=self.l0,
             T_ref=self.T_ref,
             plane=self.plane,
             scene=self._scene,
-            nu=self.nu,
             load=self.load,
         )
 

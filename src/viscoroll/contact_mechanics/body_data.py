@@ -172,8 +172,12 @@ def _layer_terms(s: Floats, nu: float) -> tuple[Floats, Floats]:
     Returns (B, D), (n,) each, dimensionless.
     """
     # of (1 - nu) f_zz + nu k^2 f = 0 and (1 - nu) f_zzz = (2 - nu) k^2 f_z at z = h
-    own = (1.0 - 2.0 * nu) * np.sinh(s) ** 2 + 2.0 * (1.0 - nu) * np.cosh(s) ** 2
-    det = ((1.0 - 2.0 * nu) * np.sinh(s)) ** 2 - (2.0 * (1.0 - nu) * np.cosh(s)) ** 2 - s * s
+    a = 1.0 - 2.0 * nu
+    b = 2.0 * (1.0 - nu)
+    sinh = np.sinh(s)
+    cosh = np.cosh(s)
+    own = a * sinh**2 + b * cosh**2
+    det = (a * sinh) ** 2 - (b * cosh) ** 2 - s * s
     return (s - (1.5 - 2.0 * nu) * np.sinh(2.0 * s)) / det, own / det
 
 
@@ -210,23 +214,23 @@ class BodyData:
     ----------
     pair : both bodies; None where both are of the paper's material, one of a single relaxation
         time.
-    G : long-time shear modulus of the paper's material, Pa, a number or (n,); None with a pair.
+    E, nu : long-time Young's modulus, Pa, and Poisson's ratio of the paper's material, numbers or
+        (n,); not used with a pair.
     R, l0 : radius and contact length at rest, m, numbers or (n,).
     T_ref : unit of time of the scene, s.
     plane : "strain" or "stress".
     scene : the dimensionless scene.
-    nu : Poisson's ratio of the paper's material; None with a pair.
     load : N/m, a number or (n,).
     """
 
     pair: Pair | None
-    G: Any
+    E: Any
+    nu: Any
     R: Any
     l0: Any
     T_ref: float
     plane: str
     scene: Parameters
-    nu: Any
     load: Any
 
     @cached_property
@@ -390,8 +394,9 @@ class BodyData:
         softest body is among the known ones.  Rigid bodies do not count.  Like bodies of one
         material count as one, "the material".
         """
-        bodies: list[Any] = [("the material", self.G, None)]
-        if self.pair is not None:
+        if self.pair is None:
+            bodies: list[Any] = [("the material", self.E / (2.0 * (1.0 + self.nu)), None)]
+        else:
             one = self.pair.cylinder
             other = self.pair.half_space
             bodies = [("the cylinder", one.G, one.density), ("the base", other.G, other.density)]

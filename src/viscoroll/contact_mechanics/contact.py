@@ -31,7 +31,7 @@ from ..core import (
 from ..kernels.records import Loads, LoadsAndSlopes
 from ..laws import LawGrid
 from .assumptions import moment_error, transit_frequency
-from .contact_table import ACCURACY, evaluate_contact, field_names, refuse_overflow
+from .contact_table import evaluate_contact, field_names, refuse_overflow
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model
 
@@ -234,10 +234,10 @@ def contact(
         scene, speed, creep=creep, creep_is_omega=delta is None, names=names, method=method
     )
     if scale.si:
-        if ACCURACY in found:
+        if "M_error" in found:
             # until here M_error has the values of lam
-            frequency = transit_frequency(given["V"], found[ACCURACY] * scale["length"])
-            found[ACCURACY] = moment_error(frequency, roller.body_data.records)[()]
+            frequency = transit_frequency(given["V"], found["M_error"] * scale["length"])
+            found["M_error"] = moment_error(frequency, roller.body_data.records)[()]
         found = {
             name: value * scale[name] if name in DIMENSIONS else value
             for name, value in found.items()

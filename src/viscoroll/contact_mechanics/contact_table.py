@@ -66,31 +66,22 @@ SLOPES_OF_COVERS = ("dM_ddelta", "dM_domega", "dM_half_space_domega", "dM_cylind
 _ALL_SLOPES = SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS
 #: Added mass of slow speed changes.
 UNSTEADY = "N"
-#: Friction reserve 1 - |Q|/mu.
-GRIP = "grip"
-#: Creepage of free rolling of a cover, in which stick and the strain by the pressure balance; 0 for
-#: half-spaces.
-FREE_CREEP = "delta_0"
-#: Approach of the bodies, of layers on rigid ground.
-DEPTH = "depth"
 #: Creepages at which full slip begins: default fields of method "coupled".
 ONSETS = ("delta_minus", "delta_plus")
 #: Fields that the law of a grid of another program does not have.
 NOT_IN_GRIDS = ("beta", "epsilon", "lam", "length", "zeta", "full_slip", "delta_star", *ONSETS)
 #: Fields that method "coupled" alone has, with the default ones first.
-OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
-#: Accuracy of M by the data of the materials, of a cylinder in SI units alone.
-ACCURACY = "M_error"
+OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", "depth")
 #: Field -> the field of which it is a multiple, or from which it follows: the length is lam times
 #: l0, C_rr is M/(P R).
-_MULTIPLES = {"length": "lam", "C_rr": "M", ACCURACY: "lam"}
+_MULTIPLES = {"length": "lam", "C_rr": "M", "M_error": "lam"}
 #: Field of like bodies -> the field of which it is half.
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
 _KNOWN = (
     *(*FIELDS, *OF_BODIES, *_ALL_SLOPES),
-    *(UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *ONSETS, *OF_COUPLED),
+    *(UNSTEADY, "grip", "delta_0", *_MULTIPLES, *ONSETS, *OF_COUPLED),
 )
 
 
@@ -132,7 +123,7 @@ def field_names(
     cover = scene.tabulated or scene.cover is not None
     if fields is not None:
         names = check_names(
-            "fields", fields, _KNOWN if si else [x for x in _KNOWN if x != ACCURACY], "a field"
+            "fields", fields, _KNOWN if si else [x for x in _KNOWN if x != "M_error"], "a field"
         )
     elif si:
         names = ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)
@@ -141,7 +132,7 @@ def field_names(
     if slopes:
         more = SLOPES + SLOPES_OF_BODIES * (not like) + SLOPES_OF_COVERS * cover
         names += tuple(name for name in more if name not in names)
-    added = (FREE_CREEP,) * cover
+    added = ("delta_0",) * cover
     if method == "coupled":
         allowed = "left out: method 'coupled' computes no derivatives and no added mass N"
         refuse_fields(names, (*_ALL_SLOPES, UNSTEADY), allowed)
@@ -152,7 +143,7 @@ def field_names(
             if not set(_ALL_SLOPES).isdisjoint(names):
                 allowed = "'table' for derivatives, which method 'direct' does not compute"
                 raise ParameterError("method", "'direct'", allowed)
-            only_table = (UNSTEADY, GRIP, FREE_CREEP, *ONSETS)
+            only_table = (UNSTEADY, "grip", "delta_0", *ONSETS)
             refuse_fields(only_table, names, "left out, or computed with method='table'")
         if cover:
             allowed = (
@@ -325,12 +316,7 @@ def evaluate_contact(
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
     rows = evaluate_law(
-        material,
-        [*arrays.values()],
-        shape=shape,
-        creep_is_omega=creep_is_omega,
-        names=computed,
-        direct=direct,
+        material, [*arrays.values()], shape, creep_is_omega, names=computed, direct=direct
     )
     return complete(names, computed, rows, shape)
 

@@ -224,9 +224,8 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     table = values.reshape(2, 3, BINS, DEGREE + 1) @ fit.T
     local = body.sign * body.share * body.local
     parts = [(local * strength, length) for strength, length in [(instant, 0.0), *modes]]
-    return BodyKernels(
-        body.share * table.transpose(2, 0, 1, 3), body.share * instant, np.array(parts)
-    )
+    table = np.ascontiguousarray(body.share * table.transpose(2, 0, 1, 3))
+    return BodyKernels(table, body.share * instant, np.array(parts))
 
 
 def growth(bodies: Any, times: Floats) -> Floats:
@@ -346,7 +345,7 @@ class CoupledPair(NamedTuple):
         material = scene.material
         if scene.gridded:
             raise described_error("material", "is a grid of Q and M", "the bodies for this method")
-        if np.size(scene.alpha) != 1 or (material is not None and material.shape):
+        if np.size(scene.alpha) != 1 or scene.material_array is not None:
             shape = np.shape(scene.alpha)
             allowed = "a single material with method='coupled': make a call for each"
             sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
@@ -358,7 +357,7 @@ class CoupledPair(NamedTuple):
             material = Bodies(material, material)
         shares = {"base": 1.0 - material.share, "cylinder": material.share}
         parts = [(side, share, *material.body(side)) for side, share in shares.items()]
-        made = [
+        made = (
             CoupledBody(
                 side=side,
                 share=float(share),
@@ -369,7 +368,7 @@ class CoupledPair(NamedTuple):
             )
             for side, share, series, nu, thickness in parts
             if share > 0.0  # a rigid body has no part of the compliance
-        ]
+        )
         return cls(tuple(made))
 
 
@@ -437,7 +436,7 @@ class CoupledRow:
             0.5 * coupled_states.WEIGHT_OF_LAYER * math.log(max(_UNLAYERED / layer, 1.0))
         )
         kernels = {body.side: body_kernels(body, u) for body in pair.bodies}
-        table = np.ascontiguousarray(sum(each.table for each in kernels.values()))
+        table: Any = sum(each.table for each in kernels.values())
         instant = math.fsum(each.instant for each in kernels.values())
         local = np.concatenate([each.local for each in kernels.values()])
         # kernels by which M and work are divided: of the cylinder, or of the single body
@@ -445,7 +444,7 @@ class CoupledRow:
         coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = coupled_states.Row(
             both=BodyKernels(table, instant, local),
-            own=own._replace(table=np.ascontiguousarray(own.table)),
+            own=own,
             coupled=coupled,
             split=len(kernels) == 2,
             cylinder="cylinder" in kernels,
@@ -546,18 +545,12 @@ class CoupledRow:
         out = np.zeros(coupled_states.COLUMNS)
         sign = 1.0 if creep >= high else -1.0
         d = 0.5 * creep if low < creep < high else np.inf
-        found = coupled_states.solve_one(
-            self._row, self.mu, d, self.n, *self._guesses, sign, out
-        )
+        found = coupled_states.solve_one(self._row, self.mu, d, self.n, *self._guesses, sign, out)
         self.refuse_unsolved([out[8]], [creep])
         p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
         unit = coupled_states.LOAD / np.trapezoid(p, found.nodes)
-        return CoupledProfile(
-            nodes=found.nodes,
-            shift=0.5 * out[0] * out[1],  # half of lam times epsilon
-            p=p * unit,
-            q=q * unit,
-        )
+        shift = 0.5 * out[0] * out[1]  # half of lam times epsilon
+        return CoupledProfile(found.nodes, shift, p=p * unit, q=q * unit)
 
     def refuse_unsolved(self, status: Any, creeps: Any) -> None:
         """Raise ConvergenceError for the first state whose status is not 0; else do nothing.

@@ -21,14 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core import (
-    Floats,
-    ParameterError,
-    check_integer,
-    load_kept,
-    run_blocks,
-    save_kept,
-)
+from ..core import Floats, ParameterError, check_integer, load_kept, run_blocks, save_kept
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
 from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade

@@ -396,9 +396,7 @@ class Parameters(Roller):
         """The scene by the law of its bodies without a table; the scene itself where that is its
         law, or where a grid was given.
         """
-        if not self.tabulated or self.gridded:
-            return self
-        return self.replace(coupled=False)
+        return self.replace(coupled=False) if self.tabulated and not self.gridded else self
 
     @property
     def like_bodies(self) -> bool:
@@ -434,14 +432,14 @@ class Parameters(Roller):
         True
         """
         cosine = slope_tan_cos(slope)[1]
-        sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})
-        broadcast_shape(slope=cosine, **sizes)
+        thickness = getattr(self.cover, "thickness", None)
+        broadcast_shape(slope=cosine, **self.numbers, thickness=thickness)
         changes = {
             "kappa": self.kappa / np.sqrt(cosine),
             "gamma": None if self.gamma is None else self.gamma * cosine,
         }
         if self.cover is not None:  # its thickness is divided by the l0 of that load
-            changes["material"] = self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))
+            changes["material"] = self.cover.of_thickness(thickness / np.sqrt(cosine))
         return self.replace(**changes)
 
     @property

@@ -30,15 +30,8 @@ from ..core import (
     strip_labels,
 )
 from ..laws import CoverModes, half_line_rule, pressure, series_record
-from ..materials import Cover, layer_excess, local_coupling, total_series
-from .contact_table import (
-    DEPTH,
-    FREE_CREEP,
-    complete,
-    computed_fields,
-    evaluate_contact,
-    refuse_overflow,
-)
+from ..materials import Cover, layer_excess, total_series
+from .contact_table import complete, computed_fields, evaluate_contact, refuse_overflow
 from .coupled_pair import CoupledPair, CoupledRow, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
@@ -75,7 +68,8 @@ class _States:
     kappa, mu, V : as in the scene, with V of any sign; sign : that of V, 1.0 of 0.
     slip, delta : omega - V, and the creepage; infinite for omega other than 0 at V = 0.
     u, creep : kappa |V|, and 2 kappa delta.
-    groups : indices of the states of each row, a list of arrays.
+    rows, groups : kappa |V| and mu of each row, (rows, 2), and the indices of its states, a list of
+        arrays.
     """
 
     def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
@@ -111,8 +105,9 @@ class _States:
         with np.errstate(over="ignore"):
             self.creep = 2.0 * self.kappa * self.delta
         # states of one speed and friction share the onsets of full slip, which are solved once
-        rows, row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
-        self.groups = [np.flatnonzero(row.ravel() == n) for n in range(rows.shape[1])]
+        pairs = np.stack([self.u, self.mu], axis=-1)
+        self.rows, row = np.unique(pairs, axis=0, return_inverse=True)
+        self.groups = [np.flatnonzero(row.ravel() == n) for n in range(len(self.rows))]
 
 
 def evaluate_coupled(
@@ -127,38 +122,37 @@ def evaluate_coupled(
     half-space; ConvergenceError where a state has no solution.
     """
     pair = CoupledPair.of_scene(scene)
-    if DEPTH in names and any(math.isinf(body.thickness) for body in pair.bodies):
+    if "depth" in names and any(math.isinf(body.thickness) for body in pair.bodies):
         allowed = "left out: in plane strain the approach of a half-space is infinite"
-        raise ParameterError("fields", repr(DEPTH), allowed)
+        raise ParameterError("fields", "'depth'", allowed)
     states = _States(scene, V, creep, creep_is_omega)
-    groups = states.groups
     computed = computed_fields(names, unlike=True)
     out = np.empty((len(computed), states.V.size))
 
-    def work(row: int, _: int) -> None:
-        """Compute the states of a row and write them into their columns of ``out``."""
-        fields = _fields_of_row(pair, states, groups[row], computed)
-        for n, name in enumerate(computed):
-            out[n, groups[row]] = fields[name]
+    def work(n: int, _: int) -> None:
+        """Compute the states of the n-th row and write them into their columns of ``out``."""
+        which = states.groups[n]
+        row = coupled_row(pair, *states.rows[n].tolist())
+        fields = _fields_of_row(row, states, which, computed)
+        for place, name in zip(out, computed):
+            place[which] = fields[name]
 
-    run_blocks(work, len(groups), 1)
+    run_blocks(work, len(states.groups), 1)
     return complete(names, computed, out, states.shape)
 
 
 def _fields_of_row(
-    pair: CoupledPair, states: _States, which: Any, names: tuple[str, ...]
+    row: CoupledRow, states: _States, which: Any, names: tuple[str, ...]
 ) -> dict[str, Any]:
     """Return the fields of states that have kappa |V| and mu in common.
 
-    pair: the bodies.
+    row: the :class:`.coupled_pair.CoupledRow` of these.
     states: all states of the call.
     which: indices of the states of this row, (n,), n >= 1.
     names: requested fields; depth and delta_0, which take longer, are computed only if requested.
     Returns name -> values, (n,) or one number for all, dimensionless.
     Raises ConvergenceError where a state has no solution.
     """
-    first = which[0]
-    row = coupled_row(pair, float(states.u[first]), float(states.mu[first]))
     kappa, mu, V, sign, slip, delta, creep = (
         vars(states)[name][which] for name in ("kappa", "mu", "V", "sign", "slip", "delta", "creep")
     )
@@ -170,10 +164,7 @@ def _fields_of_row(
     low, high = row.onsets()
     with np.errstate(divide="ignore", over="ignore"):
         zeta = 0.5 * found.lam / row.u
-    fields = {
-        "lam": found.lam,
-        "epsilon": found.epsilon,
-        "beta": found.beta,
+    fields = found._asdict() | {
         "zeta": zeta,
         "delta": delta,
         "delta_minus": 0.5 * low / kappa,
@@ -189,37 +180,37 @@ def _fields_of_row(
         "loss_cylinder": half * (2.0 * found.kM_cylinder + found.work_cylinder),
     }
     fields["M"] = fields["M_half_space"] + fields["M_cylinder"]
-    if FREE_CREEP in names:
-        fields[FREE_CREEP] = 0.5 * row.free_creep() / kappa
-    if DEPTH in names:
-        depths = [depth(pair.bodies, row.u, row.profile(each)) for each in creep.tolist()]
-        fields[DEPTH] = np.array(depths) / kappa
+    if "delta_0" in names:
+        fields["delta_0"] = 0.5 * row.free_creep() / kappa
+    if "depth" in names:
+        fields["depth"] = np.array([depth(row, each) for each in creep.tolist()]) / kappa
     return fields
 
 
-def depth(bodies: Any, u: float, profile: Any) -> float:
-    """Return the approach of two bodies, each rigid or a layer on a rigid body.
+def depth(row: CoupledRow, creep: float) -> float:
+    """Return the approach of two bodies in one state, each rigid or a layer on a rigid body.
 
     It is the mean, weighted by the pressure, of the displacement of both surfaces (by Parseval's
     theorem) plus that of the cylinder's profile x^2/2.
 
-    bodies: a :class:`CoupledBody` for each body that deforms, of finite thickness.
-    u: kappa |V|, dimensionless, >= 0 or infinite.
-    profile: :class:`CoupledProfile`, tractions of the state, of which nodes, shift, p and q are
-        read; x is counted from the axis, nodes + shift.
+    row: the row of the state, each of whose bodies has a finite thickness.
+    creep: its reduced creepage 2 kappa delta.
     Returns the approach divided by l0^2/R, a float, positive where the bodies have come closer than
     at their first touch.
     """
+    profile = row.profile(creep)
     half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
     k, weights = half_line_rule(_WAVES[2], 1.0 / half, _WAVES[:2])
     p = transforms(profile.nodes, profile.p, k)
     q = transforms(profile.nodes, profile.q, k)
     total = 0.0
-    for body in bodies:
-        compliance = wave_compliance(body, u, k)
-        L, _, C = layer_transforms(body.nu, k * body.thickness)
-        work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
+    for body in row.pair.bodies:
+        compliance = wave_compliance(body, row.u, k)
+        L, _, C = layer_excess(body.nu, k * body.thickness)
+        coupling = 1j * body.sign * (body.local + C) * q * np.conj(p)
+        work = compliance / k * ((1.0 + L) * np.abs(p) ** 2 + coupling)
         total += body.share * float(weights @ work.real) / np.pi
+    # x is counted from the axis
     x, weights = _element_points(profile.nodes)
     pressure = np.interp(x, profile.nodes, profile.p) * weights
     square = pressure @ (x + profile.shift) ** 2
@@ -245,17 +236,6 @@ def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
     """
     x, weights = _element_points(nodes)
     return np.exp(-1j * np.multiply.outer(k, x)) @ (np.interp(x, nodes, values) * weights)
-
-
-def layer_transforms(nu: float, u: Floats) -> Floats:
-    """Return the transforms L, T and C (:mod:`.coupled_pair`) of a bonded layer.
-
-    nu: Poisson's ratio.
-    u: wave numbers times the thickness, > 0, (n,).
-    Returns L and T divided by those of a half-space, and C, dimensionless, (3, n).
-    """
-    L, shear, C = layer_excess(nu, u)
-    return np.array([1.0 + L, 1.0 + L + shear, local_coupling(nu) + C])
 
 
 def coupled_stress(
