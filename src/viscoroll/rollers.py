@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
@@ -293,7 +292,7 @@ class Cylinder(Methods):
         for name in _NUMBERS:
             if values[name] is None and name in (*_SLS, "pressed"):
                 continue
-            low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
+            low, high = (-1.0, 0.5) if name == "nu" else (0.0, np.inf)
             called = "load" if name == "pressed" else name
             array = check_array(called, values[name], unit=SI, above=low, high=high)
             values[name] = read_only(array)

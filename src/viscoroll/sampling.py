@@ -231,12 +231,10 @@ def permuted(index: Words, n: int, key: Words) -> Words:
     Returns the images, (k,), uint64, < n, a new array.
     """
     # half of the bits of n - 1, rounded up: 4^half >= n
-    half = max((int(n - 1).bit_length() + 1) // 2, 1)
+    half = max(((n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)
-    outside = np.flatnonzero(result >= n)
-    while outside.size:
+    while (outside := np.flatnonzero(result >= n)).size:
         result[outside] = _feistel(result[outside], half, key)
-        outside = outside[result[outside] >= n]
     return result
 
 

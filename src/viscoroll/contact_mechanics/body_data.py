@@ -155,8 +155,8 @@ def _layer_shear(nu: float) -> Floats:
         # f and f''/k^2 for A = 1, C = -B
         f = (1.0 + B * kz) * cosh + (D * kz - B) * sinh
         bend = (1.0 + B * kz + 2.0 * D) * cosh + (D * kz + B) * sinh
-        deep = k > s  # a half-space to rounding
-        difference = np.where(deep, 2.0 * k * z * np.exp(-k * z), f + bend)
+        # a half-space to rounding, where k > s
+        difference = np.where(k > s, 2.0 * k * z * np.exp(-k * z), f + bend)
         # dk = k d ln k, in equal steps of ln k, cancels 1/k of the pressure
         shear = 0.5 * difference @ j1(k * a) * np.log(k[1] / k[0])
         found[n] = np.abs(shear).max()
@@ -318,12 +318,9 @@ class BodyData:
         """Whether lengths seem to be in m; False where a radius or the thickness of a layer looks
         like one in mm: it is large, and the contact length of this load is short beside it.
         """
-        limits = [(self.R, _LARGE_R, _SHORT_OVER_R)]
-        limits += [
-            (body.thickness, _LARGE_THICKNESS, _SHORT_OVER_THICKNESS)
-            for body, _ in self.bodies.values()
-            if body.thickness is not None
-        ]
+        layers = [body.thickness for body, _ in self.bodies.values() if body.thickness is not None]
+        limits = [(h, _LARGE_THICKNESS, _SHORT_OVER_THICKNESS) for h in layers]
+        limits.append((self.R, _LARGE_R, _SHORT_OVER_R))
         return not any(
             np.any((size >= least) & (self.l0 < part * size)) for size, least, part in limits
         )

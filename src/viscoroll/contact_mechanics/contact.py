@@ -7,7 +7,6 @@ doi:10.1007/s00707-020-02643-5.
 """
 
 import ctypes
-import math
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, Literal, overload
@@ -276,7 +275,7 @@ class Law:
 
     #: (lowest, highest) |V| between which nothing is warned of, in the unit of V.  Where nothing is
     #: known of the bodies these are all speeds.
-    _covered = 0.0, math.inf
+    _covered = 0.0, np.inf
     _jitted: Any
 
     def __init__(self, roller: Roller) -> None:
@@ -381,7 +380,7 @@ class Law:
         if status:
             self._refuse(check_array("V", V), check_array("omega", omega))
         low, high = self._covered
-        if abs(V) < low or abs(V) > high:
+        if not low <= abs(V) <= high:
             warn_of_contact(self.roller, V, (V, V))
         return _loads_and_slopes(out) if slopes else _loads(out[:4])
 

@@ -76,13 +76,11 @@ OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", "depth")
 #: l0, C_rr is M/(P R).
 _MULTIPLES = {"length": "lam", "C_rr": "M", "M_error": "lam"}
 #: Field of like bodies -> the field of which it is half.
-_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
+_HALVES = dict.fromkeys(OF_BODIES, "M") | dict.fromkeys(SLOPES_OF_BODIES, "dM_dV")
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
-_KNOWN = (
-    *(*FIELDS, *OF_BODIES, *_ALL_SLOPES),
-    *(UNSTEADY, "grip", "delta_0", *_MULTIPLES, *ONSETS, *OF_COUPLED),
-)
+_KNOWN = FIELDS + OF_BODIES + _ALL_SLOPES
+_KNOWN += (UNSTEADY, "grip", "delta_0", *_MULTIPLES, *ONSETS, *OF_COUPLED)
 
 
 def field_names(
@@ -128,7 +126,7 @@ def field_names(
     elif si:
         names = ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)
     else:
-        names = FIELDS if like else (*FIELDS, *OF_BODIES)
+        names = FIELDS + OF_BODIES * (not like)
     if slopes:
         more = SLOPES + SLOPES_OF_BODIES * (not like) + SLOPES_OF_COVERS * cover
         names += tuple(name for name in more if name not in names)

@@ -415,8 +415,6 @@ class CoupledRow:
 
     pair, u, mu : the bodies, kappa |V|, and the coefficient of friction.
     n : number of elements of the contact.
-    full_slip : state of full slip of the negative and of the positive sign, (2, COLUMNS), as the
-        kernels write it; column 8 is the status, 0 where solved.
     """
 
     def __init__(self, pair: CoupledPair, u: float, mu: float, n: int = ELEMENTS) -> None:
@@ -426,6 +424,7 @@ class CoupledRow:
         u: kappa |V|, >= 0, or infinite.
         mu: coefficient of friction, > 0.
         n: number of elements, to which those of an edge layer are added.
+        Raises ConvergenceError where full slip has no solution.
         """
         self.pair = pair
         self.u = u
@@ -450,7 +449,8 @@ class CoupledRow:
             cylinder="cylinder" in kernels,
             layer=layer,
         )
-        self.full_slip = np.zeros((2, coupled_states.COLUMNS))
+        # states of full slip of the negative and of the positive sign
+        self._full = np.zeros((2, coupled_states.COLUMNS))
         # a guess of the half length: that of elastic half-spaces of the instantaneous compliance
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         # kappa delta at the onset of full slip of negative and of positive sign, and
@@ -458,11 +458,12 @@ class CoupledRow:
         self._ends, slopes = zip(
             *(
                 coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
-                for sign, out in zip((-1.0, 1.0), self.full_slip, strict=True)
+                for sign, out in zip((-1.0, 1.0), self._full, strict=True)
             )
         )
+        self.refuse_unsolved(self._full[:, 8], (-math.inf, math.inf))
         # guesses that are the same for bodies that are swapped; the half length is column 9
-        self._guesses = 0.5 * float(self.full_slip[:, 9].sum()), 0.5 * sum(slopes)
+        self._guesses = 0.5 * float(self._full[:, 9].sum()), 0.5 * sum(slopes)
 
     def onsets(self) -> tuple[float, float]:
         """Return the reduced creepages 2 kappa delta at which full slip begins, (the negative, the
@@ -495,8 +496,8 @@ class CoupledRow:
         order = np.argsort(given)
         low, high = self.onsets()
         inside = order[(given[order] > low) & (given[order] < high)]
-        found[given <= low] = self.full_slip[0]
-        found[given >= high] = self.full_slip[1]
+        found[given <= low] = self._full[0]
+        found[given >= high] = self._full[1]
         out = np.zeros((inside.size, coupled_states.COLUMNS))
         coupled_states.states_loop(
             self._row,

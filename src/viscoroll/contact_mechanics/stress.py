@@ -45,19 +45,8 @@ _GAUSS = 5
 _WAVES = -25.0, 80.0, 0.12
 
 
-@lru_cache(maxsize=16)
-def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
-    """Return the states of a pair at one speed, which are kept for later calls.
-
-    pair: both bodies.
-    u: kappa |V|, dimensionless, >= 0 or infinite.
-    mu: coefficient of friction, > 0.
-    Returns the :class:`.coupled_pair.CoupledRow`.
-    Raises ConvergenceError where full slip has no solution.
-    """
-    row = CoupledRow(pair, u, mu)
-    row.refuse_unsolved(row.full_slip[:, 8], [-np.inf, np.inf])
-    return row
+#: States of a pair at one speed, which are kept for later calls.
+_coupled_row = lru_cache(maxsize=16)(CoupledRow)
 
 
 class _States:
@@ -132,7 +121,7 @@ def evaluate_coupled(
     def work(n: int, _: int) -> None:
         """Compute the states of the n-th row and write them into their columns of ``out``."""
         which = states.groups[n]
-        row = coupled_row(pair, *states.rows[n].tolist())
+        row = _coupled_row(pair, *states.rows[n].tolist())
         fields = _fields_of_row(row, states, which, computed)
         for place, name in zip(out, computed):
             place[which] = fields[name]
@@ -256,7 +245,7 @@ def coupled_stress(
     x = np.broadcast_to(x, shape)
     out = np.empty((2, *shape))
     for n in range(states.V.size):
-        row = coupled_row(pair, float(states.u[n]), float(states.mu[n]))
+        row = _coupled_row(pair, float(states.u[n]), float(states.mu[n]))
         found = row.profile(float(states.creep[n]))
         place = number == n
         sign = states.sign[n]
