@@ -229,9 +229,7 @@ def contact(
         warn_of_contact(roller, speed, ends)
         speed = divide_by_unit("V", speed, scale["V"])
         creep = divide_by_unit(creep_name, creep, scale[creep_name])
-    found = evaluate_contact(
-        scene, speed, creep=creep, creep_is_omega=delta is None, names=names, method=method
-    )
+    found = evaluate_contact(scene, speed, creep, delta is None, names, method)
     if scale.si:
         if "M_error" in found:
             # until here M_error has the values of lam
@@ -550,6 +548,4 @@ def law(roller: Roller | LawGrid) -> Law:
     >>> loads.Q > 0.0
     True
     """
-    if isinstance(roller, LawGrid):
-        return _LawOfGrid(roller)
-    return Law(roller)
+    return _LawOfGrid(roller) if isinstance(roller, LawGrid) else Law(roller)

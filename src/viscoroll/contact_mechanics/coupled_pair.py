@@ -142,8 +142,7 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     """
     u, L, shear, C = layer_nodes(nu)
     k = u / thickness
-    size, _ = _fit()
-    phase = size[:, None] * k
+    phase = _fit()[0][:, None] * k
     small = phase < _SMALL_PHASE
     safe = np.where(small, 1.0, phase)
     # 1 - cos y = 2 sin^2(y/2) keeps its digits

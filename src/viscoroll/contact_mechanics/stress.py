@@ -370,7 +370,7 @@ def stress(
             speed = divide_by_unit("V", speed, scale["V"])
             creep = divide_by_unit(creep_name, creep, scale[creep_name])
     find = coupled_stress if method == "coupled" else _stress_of_law
-    stresses = find(scene, x=position, V=speed, creep=creep, creep_is_omega=delta is None)
+    stresses = find(scene, position, speed, creep, delta is None)
     stresses *= scale["p"]  # in place: a copy would double the memory of a large call
     found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
     place = "place along the contact, from the point below the axis" + ", divided by l0" * (
