@@ -379,7 +379,7 @@ def evaluate_law(
         ParameterError for a material with times beyond 1e-100 to 1e100 T_ref, and for a layer that
         is too thin.
         """
-        kappa, _, V, _ = parts
+        kappa, mu, V, creep = parts
         # States without a law in common are ordered by material, or by octaves of alpha and speed,
         # so that neighbours read the same numbers.  A record holds the law of one state at a time.
         laws: Any = (record,)
@@ -391,7 +391,7 @@ def evaluate_law(
         elif material is None and not direct:
             laws = records_of_alphas(alpha, _ALPHAS_TOGETHER)
             order = sort_by_octave(alpha, kappa, V)
-        given = states.State(*parts, creep_is_omega=creep_is_omega)
+        given = states.State(kappa, mu, V, creep, creep_is_omega)
         request = states.Request(states=given, order=order, to=rows, out=out, first=start)
         scratch = np.empty(states.SCRATCH_SIZE)
         if record and record.table is not None:

@@ -49,54 +49,40 @@ _WAVES = -25.0, 80.0, 0.12
 _coupled_row = lru_cache(maxsize=16)(CoupledRow)
 
 
-class _States:
-    """States of a call as vectors (n,), dimensionless, and which of them have kappa |V| and mu, a
-    row, in common.
+def _broadcast_states(
+    scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool
+) -> tuple[tuple[int, ...], Floats]:
+    """Broadcast and check the states of a call.
 
-    shape : shape to which the arguments broadcast, of n elements.
-    kappa, mu, V : as in the scene, with V of any sign; sign : that of V, 1.0 of 0.
-    slip, delta : omega - V, and the creepage; infinite for omega other than 0 at V = 0.
-    u, creep : kappa |V|, and 2 kappa delta.
-    rows, groups : kappa |V| and mu of each row, (rows, 2), and the indices of its states, a list of
-        arrays.
+    scene: dimensionless parameters, of which kappa and mu, numbers or arrays, are read.
+    V: speeds, dimensionless, any sign.
+    creep: omega if ``creep_is_omega``, else the creepage delta.
+    Returns (the shape to which they broadcast, of n elements; the states, (8, n), dimensionless:
+    u = kappa |V|, mu, kappa, V, the sign of V, 1.0 of 0, the slip omega - V, the creepage delta,
+    infinite for omega other than 0 at V = 0, and the reduced creepage 2 kappa delta).
+    Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
     """
-
-    def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
-        """Broadcast and check the states.
-
-        scene: dimensionless parameters, of which kappa and mu, numbers or arrays, are read.
-        V: speeds, dimensionless, any sign.
-        creep: omega if ``creep_is_omega``, else the creepage delta.
-        Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
-        """
-        arrays = {
-            "kappa": scene.kappa,
-            "mu": scene.mu,
-            "V": V,
-            "omega" if creep_is_omega else "delta": creep,
-        }
-        self.shape = broadcast_shape(**arrays)
-        refuse_overflow(scene.kappa, V)
-        self.kappa, self.mu, self.V, given = (
-            np.broadcast_to(each, self.shape).ravel() for each in arrays.values()
-        )
-        self.sign = np.where(self.V < 0.0, -1.0, 1.0)
-        if creep_is_omega:
-            self.slip = given - self.V
-            # at V = 0 infinite, with the sign of the slip, and 0/0 without slip, which is 0
-            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                delta = self.slip / np.abs(self.V) * self.sign
-                self.delta = np.where(self.slip == 0.0, 0.0, delta)
-        else:
-            self.slip = given * self.V
-            self.delta = given
-        self.u = self.kappa * np.abs(self.V)
-        with np.errstate(over="ignore"):
-            self.creep = 2.0 * self.kappa * self.delta
-        # states of one speed and friction share the onsets of full slip, which are solved once
-        pairs = np.stack([self.u, self.mu], axis=-1)
-        self.rows, row = np.unique(pairs, axis=0, return_inverse=True)
-        self.groups = [np.flatnonzero(row.ravel() == n) for n in range(len(self.rows))]
+    arrays = {
+        "kappa": scene.kappa,
+        "mu": scene.mu,
+        "V": V,
+        "omega" if creep_is_omega else "delta": creep,
+    }
+    shape = broadcast_shape(**arrays)
+    refuse_overflow(scene.kappa, V)
+    kappa, mu, V, given = (np.broadcast_to(each, shape).ravel() for each in arrays.values())
+    sign = np.where(V < 0.0, -1.0, 1.0)
+    if creep_is_omega:
+        slip = given - V
+        # at V = 0 infinite, with the sign of the slip, and 0/0 without slip, which is 0
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            delta = np.where(slip == 0.0, 0.0, slip / np.abs(V) * sign)
+    else:
+        slip = given * V
+        delta = given
+    with np.errstate(over="ignore"):
+        reduced = 2.0 * kappa * delta
+    return shape, np.array([kappa * np.abs(V), mu, kappa, V, sign, slip, delta, reduced])
 
 
 def evaluate_coupled(
@@ -114,37 +100,34 @@ def evaluate_coupled(
     if "depth" in names and any(math.isinf(body.thickness) for body in pair.bodies):
         allowed = "left out: in plane strain the approach of a half-space is infinite"
         raise ParameterError("fields", "'depth'", allowed)
-    states = _States(scene, V, creep, creep_is_omega)
+    shape, states = _broadcast_states(scene, V, creep, creep_is_omega)
+    # states of one kappa |V| and mu share the onsets of full slip, which are solved once
+    rows, row_of_state = np.unique(states[:2], axis=1, return_inverse=True)
     computed = computed_fields(names, unlike=True)
-    out = np.empty((len(computed), states.V.size))
+    out = np.empty((len(computed), states.shape[1]))
 
     def work(n: int, _: int) -> None:
         """Compute the states of the n-th row and write them into their columns of ``out``."""
-        which = states.groups[n]
-        row = _coupled_row(pair, *states.rows[n].tolist())
-        fields = _fields_of_row(row, states, which, computed)
+        which = row_of_state.ravel() == n
+        row = _coupled_row(pair, *rows[:, n].tolist())
+        fields = _fields_of_row(row, states[:, which], computed)
         for place, name in zip(out, computed):
             place[which] = fields[name]
 
-    run_blocks(work, len(states.groups), 1)
-    return complete(names, computed, out, states.shape)
+    run_blocks(work, rows.shape[1], 1)
+    return complete(names, computed, out, shape)
 
 
-def _fields_of_row(
-    row: CoupledRow, states: _States, which: Any, names: tuple[str, ...]
-) -> dict[str, Any]:
+def _fields_of_row(row: CoupledRow, states: Floats, names: tuple[str, ...]) -> dict[str, Any]:
     """Return the fields of states that have kappa |V| and mu in common.
 
     row: the :class:`.coupled_pair.CoupledRow` of these.
-    states: all states of the call.
-    which: indices of the states of this row, (n,), n >= 1.
+    states: these states, (8, n), as of :func:`_broadcast_states`.
     names: requested fields; depth and delta_0, which take longer, are computed only if requested.
     Returns name -> values, (n,) or one number for all, dimensionless.
     Raises ConvergenceError where a state has no solution.
     """
-    kappa, mu, V, sign, slip, delta, creep = (
-        vars(states)[name][which] for name in ("kappa", "mu", "V", "sign", "slip", "delta", "creep")
-    )
+    _, mu, kappa, V, sign, slip, delta, creep = states
     found = row.states(creep, apart=True)
     row.refuse_unsolved(found.status, creep)
     # V over 2 kappa, as works are times 2 kappa; moments are times kappa
@@ -239,21 +222,20 @@ def coupled_stress(
     Raises as :func:`evaluate_coupled`.
     """
     pair = CoupledPair.of_scene(scene)
-    states = _States(scene, V, creep, creep_is_omega)
-    shape = broadcast_shape(x=x, V=np.empty(states.shape))
-    number = np.broadcast_to(np.arange(states.V.size).reshape(states.shape), shape)
+    shape_of_states, states = _broadcast_states(scene, V, creep, creep_is_omega)
+    number = np.arange(states.shape[1]).reshape(shape_of_states)
+    shape = broadcast_shape(x=x, V=number)
+    number = np.broadcast_to(number, shape)
     x = np.broadcast_to(x, shape)
     out = np.empty((2, *shape))
-    for n in range(states.V.size):
-        row = _coupled_row(pair, float(states.u[n]), float(states.mu[n]))
-        found = row.profile(float(states.creep[n]))
+    for n, (u, mu, kappa, _, sign, *_, reduced) in enumerate(states.T.tolist()):
+        found = _coupled_row(pair, u, mu).profile(reduced)
         place = number == n
-        sign = states.sign[n]
         # from the middle of the contact, of a motion along +x; for V < 0 all is mirrored
         y = sign * x[place] - found.shift
         # tractions are over E'/(4 pi kappa)
         both = [np.interp(y, found.nodes, each) for each in (found.p, found.q)]
-        out[:, place] = np.array(both) / (4.0 * np.pi * states.kappa[n])
+        out[:, place] = np.array(both) / (4.0 * np.pi * kappa)
         out[1, place] *= sign
     return out
 
@@ -420,7 +402,7 @@ def _stress_of_law(
         """
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
-        points = Points(mirrored, *(read(start, stop) for read in readers))
+        points: Any = Points(mirrored, *(read(start, stop) for read in readers))
         alphas = read_alpha(start, stop)
         material: Any = scene.material
         ends: Any = [] if many is None else 1 + np.flatnonzero(np.diff(alphas))
