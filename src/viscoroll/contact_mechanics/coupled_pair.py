@@ -1,4 +1,4 @@
-"""Steady rolling with pressure and shear solved together: :class:`CoupledPair`, and its states at
+"""Steady rolling with pressure and shear solved together: :class:`CoupledBody`, and its states at
 one speed by boundary elements (:class:`CoupledRow`).
 
 **Units.**  Everything is dimensionless.  Lengths are divided by l0, the contact length at rest of
@@ -326,49 +326,46 @@ class CoupledBody(NamedTuple):
         return local_coupling(self.nu)
 
 
-class CoupledPair(NamedTuple):
-    """Both bodies of a roller, one record for each that deforms; equal pairs have one hash."""
+#: Both bodies of a roller, a record for each that deforms; equal pairs have one hash.
+CoupledPair = tuple[CoupledBody, ...]
 
-    bodies: tuple[CoupledBody, ...]
 
-    @classmethod
-    def of_scene(cls, scene: Any) -> CoupledPair:
-        """Return the pair of bodies of a roller.
+def pair_of_scene(scene: Any) -> CoupledPair:
+    """Return the pair of bodies of a roller.
 
-        scene: dimensionless parameters, a :class:`.parameters.Parameters`; its alpha or material is
+    scene: dimensionless parameters, a :class:`.parameters.Parameters`; its alpha or material is
         read.
-        Returns the :class:`CoupledPair`; without a material both are half-spaces of alpha, without
-        coupling.
-        Raises ParameterError for several materials, and for a grid, whose bodies are not known.
-        """
-        material = scene.material
-        if scene.gridded:
-            raise described_error("material", "is a grid of Q and M", "the bodies for this method")
-        if np.size(scene.alpha) != 1 or scene.material_array is not None:
-            shape = np.shape(scene.alpha)
-            allowed = "a single material with method='coupled': make a call for each"
-            sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
-            name = "alpha" if material is None else "material"
-            raise ParameterError(name, shape, allowed, sentence)
-        if material is None:
-            material = series_of_alpha(np.asarray(scene.alpha).item())
-        if not isinstance(material, Bodies):
-            material = Bodies(material, material)
-        shares = {"base": 1.0 - material.share, "cylinder": material.share}
-        parts = [(side, share, *material.body(side)) for side, share in shares.items()]
-        made = (
-            CoupledBody(
-                side=side,
-                share=float(share),
-                nu=float(nu),
-                thickness=float(thickness or math.inf),
-                J=tuple(series.J.tolist()),
-                T=tuple(series.T.tolist()),
-            )
-            for side, share, series, nu, thickness in parts
-            if share > 0.0  # a rigid body has no part of the compliance
+    Returns a :class:`CoupledBody` for each that deforms; without a material both are half-spaces of
+    alpha, without coupling.
+    Raises ParameterError for several materials, and for a grid, whose bodies are not known.
+    """
+    material = scene.material
+    if scene.gridded:
+        raise described_error("material", "is a grid of Q and M", "the bodies for this method")
+    if np.size(scene.alpha) != 1 or scene.material_array is not None:
+        shape = np.shape(scene.alpha)
+        allowed = "a single material with method='coupled': make a call for each"
+        sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
+        name = "alpha" if material is None else "material"
+        raise ParameterError(name, shape, allowed, sentence)
+    if material is None:
+        material = series_of_alpha(np.asarray(scene.alpha).item())
+    if not isinstance(material, Bodies):
+        material = Bodies(material, material)
+    shares = {"base": 1.0 - material.share, "cylinder": material.share}
+    parts = [(side, share, *material.body(side)) for side, share in shares.items()]
+    return tuple(
+        CoupledBody(
+            side=side,
+            share=float(share),
+            nu=float(nu),
+            thickness=float(thickness or math.inf),
+            J=tuple(series.J.tolist()),
+            T=tuple(series.T.tolist()),
         )
-        return cls(tuple(made))
+        for side, share, series, nu, thickness in parts
+        if share > 0.0  # a rigid body has no part of the compliance
+    )
 
 
 class CoupledStates(NamedTuple):
@@ -428,12 +425,12 @@ class CoupledRow:
         self.pair = pair
         self.u = u
         self.mu = mu
-        layer = edge_layer(pair.bodies, u)
+        layer = edge_layer(pair, u)
         # elements of the edge layer: its weight for each factor of e by which it is shorter
         self.n = n + round(
             0.5 * coupled_states.WEIGHT_OF_LAYER * math.log(max(_UNLAYERED / layer, 1.0))
         )
-        kernels = {body.side: body_kernels(body, u) for body in pair.bodies}
+        kernels = {body.side: body_kernels(body, u) for body in pair}
         table: Any = sum(each.table for each in kernels.values())
         instant = math.fsum(each.instant for each in kernels.values())
         local = np.concatenate([each.local for each in kernels.values()])

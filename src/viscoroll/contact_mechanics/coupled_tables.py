@@ -27,7 +27,7 @@ from ..kernels.numerics.jit import sources_digest
 from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade
 from ..materials import lock_array, several_tables_error
 from .assumptions import DUNDURS_LIMIT
-from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, growth
+from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, growth, pair_of_scene
 
 # --- Tables of the coupled solution ---
 
@@ -72,7 +72,7 @@ def coupled_law(
     Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.
     Raises ConvergenceError for a state that is not solved, and ParameterError for too few nodes.
     """
-    rows = tabulate(CoupledPair.of_scene(scene), scene.mu, nodes, progress)
+    rows = tabulate(pair_of_scene(scene), scene.mu, nodes, progress)
     return coupled_table(scene.alpha if scene.material is None else scene.material, rows)
 
 
@@ -83,17 +83,17 @@ def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
     count: number of nodes, >= 2; None: more the faster the compliance of the bodies grows.
     Returns ascending u, dimensionless, (n,); for elastic bodies three, whatever ``count`` is.
     """
-    times = np.array([time for body in pair.bodies for time in body.T])
+    times = np.array([time for body in pair for time in body.T])
     if not times.size:
         return _ELASTIC
     # about the shortest relaxation time: retardation time times instantaneous compliance
-    shortest = min(min(body.T) * body.instant for body in pair.bodies if body.T)
+    shortest = min(min(body.T) * body.instant for body in pair if body.T)
     low = _SPEED_RANGE[0] / times.max()
     high = _SPEED_RANGE[1] / shortest
     if count is None:
         decades = math.log10(high / low)
         looked = np.geomspace(1.0 / high, 1.0 / low, math.ceil(_LOOKS * decades))
-        steepest = float(growth(pair.bodies, looked).max())
+        steepest = float(growth(pair, looked).max())
         count = math.ceil(decades * (_PER_DECADE[0] + _PER_DECADE[1] * steepest))
     return np.geomspace(low, high, count)
 
@@ -103,7 +103,7 @@ def tabulate(
 ) -> CoupledRows:
     """Solve the rows of a table, on threads, and measure its errors.
 
-    pair: :class:`CoupledPair`, the bodies.
+    pair: the bodies.
     mu: coefficient of friction, > 0.
     nodes, progress: as in :func:`coupled_law`; 4 to 1000 nodes of speed, 9 to 1001 of creepage.
     Returns :class:`CoupledRows` with ``errors``: rows for u = 0, each node of u, and u infinite.
@@ -196,7 +196,7 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
         else:
             # elastic bodies lose energy in slip alone: else the error of the spline would drive a
             # cylinder at rest, or keep it at rest; bodies that deform share the shift
-            sides = {body.side for body in row.pair.bodies}
+            sides = {body.side for body in row.pair}
             deforms = np.array([side in sides for side in ("base", "cylinder")])
             found = _spline(t, fields[:, 1:3] @ deforms, place)(place)
             shift = np.where(deforms, (friction - found) / deforms.sum(), 0.0)
@@ -313,12 +313,12 @@ def is_coupled(pair: CoupledPair) -> bool:
     Returns True where one is a layer, or where Dundurs' constant of half-spaces exceeds 0.05 in
     modulus, at long times or at once.
     """
-    if any(math.isfinite(body.thickness) for body in pair.bodies):
+    if any(math.isfinite(body.thickness) for body in pair):
         return True
-    shares = [body.share for body in pair.bodies]
-    at_once = [body.share * body.instant for body in pair.bodies]
+    shares = [body.share for body in pair]
+    at_once = [body.share * body.instant for body in pair]
     for parts in (shares, at_once):
-        coupling = (part * body.sign * body.local for part, body in zip(parts, pair.bodies))
+        coupling = (part * body.sign * body.local for part, body in zip(parts, pair))
         if abs(math.fsum(coupling)) > DUNDURS_LIMIT * math.fsum(parts):
             return True
     return False

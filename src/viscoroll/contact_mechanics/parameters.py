@@ -357,14 +357,14 @@ class Parameters(Roller):
             return self._law.coupled is not None
         if self.coupled is False or not isinstance(self.material, Bodies):
             return False
-        from .coupled_pair import CoupledPair
+        from .coupled_pair import pair_of_scene
         from .coupled_tables import is_coupled
 
         firsts = [self]
         if self.material.shape:
             # a slice: an array of no materials has no first one
             firsts = [self.replace(material=one) for one in self.material[:1]]
-        return any(map(is_coupled, map(CoupledPair.of_scene, firsts)))
+        return any(map(is_coupled, map(pair_of_scene, firsts)))
 
     @property
     def rolling_law(self) -> LawTable | None:
@@ -379,11 +379,11 @@ class Parameters(Roller):
     @cached_property
     def _made(self) -> LawTable:
         """The table of the coupled solution of :attr:`rolling_law`; errors as there."""
-        from .coupled_pair import CoupledPair
+        from .coupled_pair import pair_of_scene
         from .coupled_tables import refuse_several_tables, stored_rows
 
         refuse_several_tables(self)
-        rows = stored_rows(CoupledPair.of_scene(self), float(np.ravel(self.mu)[0]))
+        rows = stored_rows(pair_of_scene(self), float(np.ravel(self.mu)[0]))
         return coupled_table(self.material, rows)
 
     @property

@@ -32,7 +32,7 @@ from ..core import (
 from ..laws import CoverModes, half_line_rule, pressure, series_record
 from ..materials import Cover, layer_excess, total_series
 from .contact_table import complete, computed_fields, evaluate_contact, refuse_overflow
-from .coupled_pair import CoupledPair, CoupledRow, wave_compliance
+from .coupled_pair import CoupledRow, pair_of_scene, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
@@ -96,8 +96,8 @@ def evaluate_coupled(
     Raises ParameterError for several materials, kappa |V| above 1e300, and the depth of a
     half-space; ConvergenceError where a state has no solution.
     """
-    pair = CoupledPair.of_scene(scene)
-    if "depth" in names and any(math.isinf(body.thickness) for body in pair.bodies):
+    pair = pair_of_scene(scene)
+    if "depth" in names and any(math.isinf(body.thickness) for body in pair):
         allowed = "left out: in plane strain the approach of a half-space is infinite"
         raise ParameterError("fields", "'depth'", allowed)
     shape, states = _broadcast_states(scene, V, creep, creep_is_omega)
@@ -176,7 +176,7 @@ def depth(row: CoupledRow, creep: float) -> float:
     p = transforms(profile.nodes, profile.p, k)
     q = transforms(profile.nodes, profile.q, k)
     total = 0.0
-    for body in row.pair.bodies:
+    for body in row.pair:
         compliance = wave_compliance(body, row.u, k)
         L, _, C = layer_excess(body.nu, k * body.thickness)
         coupling = 1j * body.sign * (body.local + C) * q * np.conj(p)
@@ -221,7 +221,7 @@ def coupled_stress(
     contact.
     Raises as :func:`evaluate_coupled`.
     """
-    pair = CoupledPair.of_scene(scene)
+    pair = pair_of_scene(scene)
     shape_of_states, states = _broadcast_states(scene, V, creep, creep_is_omega)
     number = np.arange(states.shape[1]).reshape(shape_of_states)
     shape = broadcast_shape(x=x, V=number)
