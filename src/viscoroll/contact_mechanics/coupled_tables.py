@@ -306,13 +306,14 @@ _ARRAYS = "u", "t", "edges", "fields"
 _lock = threading.Lock()
 
 
-def is_coupled(pair: CoupledPair) -> bool:
-    """Return whether shear acts on pressure so much that a pair needs the coupled solution.
+def is_coupled(scene: Any) -> bool:
+    """Return whether shear acts on pressure so much that a scene needs the coupled solution.
 
-    pair: the bodies.
+    scene: :class:`.parameters.Parameters` of one material.
     Returns True where one is a layer, or where Dundurs' constant of half-spaces exceeds 0.05 in
     modulus, at long times or at once.
     """
+    pair = pair_of_scene(scene)
     if any(math.isfinite(body.thickness) for body in pair):
         return True
     shares = [body.share for body in pair]
@@ -336,44 +337,42 @@ def refuse_several_tables(scene: Any) -> None:
         raise several_tables_error(name, "one value")
 
 
-def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
-    """Return the table of a pair at one mu: that of this process, else that of the cache folder,
-    else a new one, which both then keep.
+def stored_law(scene: Any) -> LawTable:
+    """Return the law of a scene by the table of its bodies at its mu: that of this process, else
+    that of the cache folder, else a new one, which both then keep.
 
-    pair: the bodies.
-    mu: coefficient of friction, > 0.
+    scene: :class:`.parameters.Parameters` of one material.
     A process that a user started shows a progress bar after one second where standard error is a
     terminal, unless $VISCOROLL_QUIET is 1.
-    Raises ConvergenceError for a state that is not solved.
+    Raises ParameterError where there would be a table for each of several bodies or mu;
+    ConvergenceError for a state that is not solved.
     """
+    refuse_several_tables(scene)
     with _lock:
-        return _rows(pair, mu)
+        rows = _stored_rows(pair_of_scene(scene), float(np.ravel(scene.mu)[0]))
+    return coupled_table(scene.material, rows)
 
 
 @lru_cache(maxsize=32)
-def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
+def _stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
     """Return the table of a pair at one mu, from its file, else solved and stored.
 
-    The file is named by a hash of the sources, the bodies and mu; a damaged one is replaced with a
-    warning.  Arguments and errors as in :func:`stored_rows`.
+    The file is named by a hash of the sources on which the bits of a table depend, the bodies and
+    mu; a damaged one is replaced with a warning.
+    pair: the bodies.
+    mu: coefficient of friction, > 0.
+    Raises ConvergenceError for a state that is not solved.
     """
-    key = hashlib.sha256(f"{_digest()} {pair!r} {mu!r}".encode()).hexdigest()[:20]
-    path = cache_root() / "coupled" / f"{key}.npz"
+    digest = hashlib.sha256(f"{sources_digest()} {pair!r} {mu!r}".encode())
+    for source in sorted(Path(__file__).parent.glob("coupled*.py")):
+        digest.update(source.read_bytes())
+    path = cache_root() / "coupled" / f"{digest.hexdigest()[:20]}.npz"
     damaged = "the cached table of the coupled solution is damaged ({}) and is made again"
     if (found := load_kept(path, damaged, _read)) is None:
         found = tabulate(pair, mu, progress=not is_quiet() and sys.stderr.isatty())
         arrays = {name: getattr(found, name) for name in ("mu", *_ARRAYS)}
         save_kept(path, _KEPT, arrays | {"errors": list(found.errors.values())})
     return found
-
-
-@lru_cache(maxsize=1)
-def _digest() -> str:
-    """Return a digest of the sources on which the bits of a table depend."""
-    digest = hashlib.sha256(sources_digest().encode())
-    for path in sorted(Path(__file__).parent.glob("coupled*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def _read(data: Any) -> CoupledRows:

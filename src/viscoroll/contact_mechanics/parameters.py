@@ -29,7 +29,7 @@ from ..core import (
     shape_error,
     slope_tan_cos,
 )
-from ..laws import LawGrid, LawTable, coupled_table
+from ..laws import LawGrid, LawTable
 from ..laws.law_table import law_table
 from ..materials import HIGHEST_ALPHA, Bodies, Cover, Prony
 
@@ -357,14 +357,13 @@ class Parameters(Roller):
             return self._law.coupled is not None
         if self.coupled is False or not isinstance(self.material, Bodies):
             return False
-        from .coupled_pair import pair_of_scene
         from .coupled_tables import is_coupled
 
         firsts = [self]
         if self.material.shape:
             # a slice: an array of no materials has no first one
             firsts = [self.replace(material=one) for one in self.material[:1]]
-        return any(map(is_coupled, map(pair_of_scene, firsts)))
+        return any(map(is_coupled, firsts))
 
     @property
     def rolling_law(self) -> LawTable | None:
@@ -379,12 +378,9 @@ class Parameters(Roller):
     @cached_property
     def _made(self) -> LawTable:
         """The table of the coupled solution of :attr:`rolling_law`; errors as there."""
-        from .coupled_pair import pair_of_scene
-        from .coupled_tables import refuse_several_tables, stored_rows
+        from .coupled_tables import stored_law
 
-        refuse_several_tables(self)
-        rows = stored_rows(pair_of_scene(self), float(np.ravel(self.mu)[0]))
-        return coupled_table(self.material, rows)
+        return stored_law(self)
 
     @property
     def gridded(self) -> bool:

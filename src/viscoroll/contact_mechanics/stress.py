@@ -171,10 +171,9 @@ def depth(row: CoupledRow, creep: float) -> float:
     at their first touch.
     """
     profile = row.profile(creep)
-    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    half = 0.5 * np.ptp(profile.nodes)
     k, weights = half_line_rule(_WAVES[2], 1.0 / half, _WAVES[:2])
-    p = transforms(profile.nodes, profile.p, k)
-    q = transforms(profile.nodes, profile.q, k)
+    p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
     total = 0.0
     for body in row.pair:
         compliance = wave_compliance(body, row.u, k)
