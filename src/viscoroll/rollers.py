@@ -87,6 +87,7 @@ class Methods(Roller):
         pair_temperatures = pair_temperatures
 
 
+@dataclass
 class _PublicFunction:
     """A public function of the package as a method, imported at its first use: a contact imports no
     motions and no heat.
@@ -94,8 +95,7 @@ class _PublicFunction:
     name : public name of a function whose first argument is a roller.
     """
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    name: str
 
     def __get__(self, roller: Methods | None, owner: type[Methods]) -> Any:
         """Import the function, and put it in the place of this object in :class:`Methods`.

@@ -479,9 +479,7 @@ class _LawOfGrid(Law):
         Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or
         infinite input, and for shapes that do not broadcast.
         """
-        evaluate = np.vectorize(
-            lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 10
-        )
+        evaluate = np.vectorize(partial(self, slopes=True), otypes=[float] * 10)
         plain, labels = strip_labels({"V": V, "omega": omega}, self.roller.scale)
         speeds = {name: check_array(name, each) for name, each in plain.items()}
         broadcast_shape(**speeds)

@@ -468,9 +468,7 @@ class Contacts(NamedTuple):
         Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it, and of a
         table; the float 0.0 of half-spaces.
         """
-        if self.law.moment_of_speed_alone:
-            return 0.0
-        return self.fields(V, 0.0, "delta_0")[0]
+        return 0.0 if self.law.moment_of_speed_alone else self.fields(V, 0.0, "delta_0")[0]
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:

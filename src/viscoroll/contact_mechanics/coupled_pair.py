@@ -434,13 +434,11 @@ class CoupledRow:
         table: Any = sum(each.table for each in kernels.values())
         instant = math.fsum(each.instant for each in kernels.values())
         local = np.concatenate([each.local for each in kernels.values()])
-        # kernels by which M and work are divided: of the cylinder, or of the single body
-        own = kernels.get("cylinder", next(iter(kernels.values())))
-        coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = coupled_states.Row(
             both=BodyKernels(table, instant, local),
-            own=own,
-            coupled=coupled,
+            # by these M and work are divided: those of the cylinder, or of the single body
+            own=kernels.get("cylinder", next(iter(kernels.values()))),
+            coupled=bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max()),
             split=len(kernels) == 2,
             cylinder="cylinder" in kernels,
             layer=layer,

@@ -126,8 +126,8 @@ def tabulate(
     rows: list[Any] = [None] * solved
 
     def begin(n: int, _: int) -> None:
-        rows[n] = CoupledRow(pair, float(speeds[n]), mu)
-        edges[n, :3] = rows[n].touch(), *rows[n].onsets()
+        rows[n] = row = CoupledRow(pair, float(speeds[n]), mu)
+        edges[n, :3] = row.touch(), *row.onsets()
 
     def solve(n: int, _: int) -> None:
         edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
