@@ -466,7 +466,7 @@ def refuse_other_friction(law: LawTable, mu: Any) -> None:
     mu: coefficient of friction of the scene, a number or an array.
     """
     table = law.coupled
-    if table is not None and not np.allclose(mu, table.mu, rtol=_SAME_MU, atol=0.0):
+    if table is not None and np.abs(np.asarray(mu) / table.mu - 1.0).max(initial=0.0) > _SAME_MU:
         allowed = f"{table.mu!r}, for which the table was computed"
         raise ParameterError("mu", format_value(mu), allowed)
 
