@@ -229,7 +229,12 @@ def contact(
         warn_of_contact(roller, speed, ends)
         speed = divide_by_unit("V", speed, scale["V"])
         creep = divide_by_unit(creep_name, creep, scale[creep_name])
-    found = evaluate_contact(scene, speed, creep, delta is None, names, method)
+    if method == "coupled":
+        from .stress import evaluate_coupled
+
+        found = evaluate_coupled(scene, speed, creep, delta is None, names)
+    else:
+        found = evaluate_contact(scene, speed, creep, delta is None, names, method)
     if scale.si:
         if "M_error" in found:
             # until here M_error has the values of lam

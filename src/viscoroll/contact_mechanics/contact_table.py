@@ -79,8 +79,10 @@ _MULTIPLES = {"length": "lam", "C_rr": "M", "M_error": "lam"}
 _HALVES = dict.fromkeys(OF_BODIES, "M") | dict.fromkeys(SLOPES_OF_BODIES, "dM_dV")
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
-_KNOWN = FIELDS + OF_BODIES + _ALL_SLOPES
-_KNOWN += (UNSTEADY, "grip", "delta_0", *_MULTIPLES, *ONSETS, *OF_COUPLED)
+_KNOWN = (
+    *(*FIELDS, *OF_BODIES, *_ALL_SLOPES),
+    *(UNSTEADY, "grip", "delta_0", *_MULTIPLES, *ONSETS, *OF_COUPLED),
+)
 
 
 def field_names(
@@ -261,8 +263,8 @@ def evaluate_contact(
         shape.
     creep_is_omega : whether ``creep`` is omega.
     names : fields, as in :func:`field_names`.
-    method : "table", from the rows of the law; "direct", by root solves of the printed equations;
-        or "coupled" (:func:`.stress.evaluate_coupled`).
+    method : "table", from the rows of the law, or "direct", by root solves of the printed
+        equations.
 
     Returns
     -------
@@ -277,17 +279,11 @@ def evaluate_contact(
     ParameterError
         kappa |V| above :data:`FASTEST` (for Q by method "direct" above :data:`_FASTEST_DIRECT`),
         shapes that do not broadcast, a material with method "direct", N of an array of materials,
-        what method "coupled" refuses,
         times of a material beyond 1e-100 to 1e100 T_ref, a layer too thin for its law;
         ``$VISCOROLL_THREADS`` that is no whole number >= 1.
     ConvergenceError
-        If an iteration of method "direct" reaches its limit, or a state of method "coupled" has no
-        solution.
+        If an iteration of method "direct" reaches its limit.
     """
-    if method == "coupled":
-        from .stress import evaluate_coupled
-
-        return evaluate_coupled(scene, V, creep, creep_is_omega, names)
     arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
     arrays["omega" if creep_is_omega else "delta"] = creep
     direct = method == "direct"
