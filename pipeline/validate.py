@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from pipeline.validation import roll_direct, validate
-from viscoroll.contact_mechanics.coupled_pair import CoupledPair
+from viscoroll.contact_mechanics.coupled_pair import pair_of_scene
 from viscoroll.contact_mechanics.coupled_tables import measure_errors
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_dataset, write_text
@@ -77,7 +77,7 @@ def coupled_checks(settings: Coupled | None, seed: int) -> list[Check]:
     if settings is None:
         return []
     rows = vr.load_law(stage.ROOT / settings.table).coupled
-    pair = CoupledPair.of_scene(read_roller(stage.ROOT / settings.roller).scene())
+    pair = pair_of_scene(read_roller(stage.ROOT / settings.roller).scene())
     found = measure_errors(rows, pair, settings.points, seed, settings.elements)
     meaning = f"against {settings.elements} elements at {settings.points} points that are no nodes"
     name = Path(settings.table).stem

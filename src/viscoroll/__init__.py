@@ -72,10 +72,8 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from .core import suggest_arguments
 
-    if (path := _MODULES[name]) == ".":
-        home = import_module(f".{name}", __name__)
-    else:
-        home = __import__(path[1:], globals(), fromlist=[name], level=1)
+    path = _MODULES[name]
+    home = import_module(f".{name}" if path == "." else path, __name__)
     for each, module in _MODULES.items():  # a result has a class that nobody asked for by name
         if loaded := sys.modules.get(__name__ + module.rstrip(".")):
             suggest_arguments(loaded, (each,))

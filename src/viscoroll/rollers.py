@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -88,6 +87,7 @@ class Methods(Roller):
         pair_temperatures = pair_temperatures
 
 
+@dataclass
 class _PublicFunction:
     """A public function of the package as a method, imported at its first use: a contact imports no
     motions and no heat.
@@ -95,8 +95,7 @@ class _PublicFunction:
     name : public name of a function whose first argument is a roller.
     """
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    name: str
 
     def __get__(self, roller: Methods | None, owner: type[Methods]) -> Any:
         """Import the function, and put it in the place of this object in :class:`Methods`.
@@ -244,6 +243,7 @@ class Cylinder(Methods):
     #: the load as it was given: :meth:`replace` with another m makes the weight anew
     pressed: Any
     coupled: bool | None
+    _names = _NUMBERS
 
     def __init__(
         self,
@@ -289,10 +289,10 @@ class Cylinder(Methods):
                 f"{missing} not given: give all of E, nu, T_epsilon and T_sigma, or a material"
             )
             raise ParameterError(missing, None, "given, or material", sentence)
-        optional = (*_SLS, "pressed")
-        numbers = [name for name in _NUMBERS if values[name] is not None or name not in optional]
-        for name in numbers:
-            low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
+        for name in _NUMBERS:
+            if values[name] is None and name in (*_SLS, "pressed"):
+                continue
+            low, high = (-1.0, 0.5) if name == "nu" else (0.0, np.inf)
             called = "load" if name == "pressed" else name
             array = check_array(called, values[name], unit=SI, above=low, high=high)
             values[name] = read_only(array)
@@ -333,7 +333,7 @@ class Cylinder(Methods):
         """Unit of dimensionless times, s, a float: T_epsilon (of an array the largest), or T_ref of
         the materials.
         """
-        if self.T_epsilon is None or not self._sls_parameters:
+        if not self._sls_parameters:
             return self.pair.T_ref
         # 1 s without cylinders
         return float(np.max(self.T_epsilon, initial=0.0)) or 1.0
@@ -366,23 +366,23 @@ class Cylinder(Methods):
         >>> vr.presets.RUBBER_CYLINDER.replace(mu=0.4, load=500.0).load
         500.0
         """
-        names = (*_NUMBERS, "plane", "material", "base", "coupled")
-        values = {name: getattr(self, name) for name in names}
-        # the load as it was given: None where it is the weight, which follows the new m and g
-        values["load"] = values.pop("pressed")
+        if "load" in changes:
+            changes["pressed"] = changes.pop("load")
         if changes.get("material") is not None:
-            values |= dict.fromkeys(_SLS)
+            changes = dict.fromkeys(_SLS) | changes
         elif changes.keys() & set(_SLS):
-            values["material"] = None
-        return type(self)(**(values | changes))
+            changes = {"material": None} | changes
+        return replace(self, **changes)
 
     @property
     def numbers(self) -> dict[str, Any]:
         """The parameters that were given as numbers or arrays, by name, in SI units; "load" only if
         it was given.
         """
-        values = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
-        return {name: value for name, value in values.items() if value is not None}
+        values = super().numbers
+        if self.pressed is not None:
+            values["load"] = values.pop("pressed")
+        return values
 
     def on_slope(self, slope: Any) -> Cylinder:
         """Return the same cylinder under the load P cos(slope), the part of the load normal to a
@@ -507,22 +507,20 @@ class Cylinder(Methods):
         Where T_epsilon is an array, times differ relative to T_ref too, and the law is a creep
         series of one mode, J = 1 - T_sigma/T_epsilon and T = T_epsilon/T_ref, for each cylinder.
         """
-        law: Any = self.material if isinstance(self.material, LawTable) else None
-        if law is not None and isinstance(law.material, Cover):
-            self.pair.refuse_other_cover(law.material, self.l0)
-        if self._sls_parameters:
+        if isinstance(self.material, LawTable):
+            law: Any = self.material
+            if isinstance(law.material, Cover):
+                self.pair.refuse_other_cover(law.material, self.l0)
+        elif self._sls_parameters:
             # alpha = T_epsilon/T_sigma; one out of range is refused by the scene
-            slow, fast = (np.asarray(T, np.float64) for T in (self.T_epsilon, self.T_sigma))
             with np.errstate(all="ignore"):
-                law = (slow / fast)[()]
-            if slow.ndim:
-                slow, fast = np.broadcast_arrays(slow, fast)
+                law = self.T_epsilon / self.T_sigma
+            if np.ndim(self.T_epsilon):
+                slow, fast = np.broadcast_arrays(self.T_epsilon, self.T_sigma)
                 law = Prony.creep(
-                    (1.0 - fast / slow)[:, np.newaxis],
-                    (slow / self.T_ref)[:, np.newaxis],
-                    alpha=law,
+                    (1.0 - fast / slow)[:, None], (slow / self.T_ref)[:, None], alpha=law
                 )
-        if law is None:
+        else:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
             if self.coupled is not False:
                 self.pair.refuse_coupled_ratios(law, DUNDURS_LIMIT)
@@ -538,14 +536,12 @@ class Cylinder(Methods):
         or overflow, or their shapes do not broadcast; ValueError of numpy where those of R, load
         and E_prime, or of R, m, load and T_ref, do not.
         """
-        R, m, load, T, E_prime = (
-            np.asarray(value, np.float64)[()]
-            for value in (self.R, self.m, self.load, self.T_ref, self.E_prime)
-        )
-        # values beyond the range of doubles become 0 or infinite, and are refused with the formula
+        # values beyond the range of doubles become 0 or infinite, as numbers of numpy do, and are
+        # refused with the formula
+        T = np.float64(self.T_ref)
         with np.errstate(all="ignore"):
-            kappa = R / contact_length(R, load, E_prime)
-            gamma = load * T**2 / (m * R)
+            kappa = self.R / self.l0
+            gamma = self.load * T**2 / (self.m * self.R)
         check_array("kappa (R divided by the contact length at rest)", kappa, above=0.0)
         check_array("gamma (load times T_ref^2, divided by m R)", gamma, above=0.0)
         material = "alpha" if isinstance(law, float | np.ndarray) else "material"
@@ -558,19 +554,16 @@ class Cylinder(Methods):
         """Data of the bodies in SI units, from which validity and warnings are computed, a
         :class:`.BodyData`.
         """
-        # E to T_sigma may be arrays, of which no pair can be made: the shear modulus stands for it
-        pair, G = (
-            (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
-        )
         return BodyData(
-            pair=pair,
-            G=G,
+            # E to T_sigma may be arrays, of which no pair can be made
+            pair=None if self._sls_parameters else self.pair,
+            E=self.E,
+            nu=self.nu,
             R=self.R,
             l0=self.l0,
             T_ref=self.T_ref,
             plane=self.plane,
             scene=self._scene,
-            nu=self.nu,
             load=self.load,
         )
 

@@ -133,14 +133,12 @@ def sample(
     check_choice("design", design, *get_args(Design))
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]
     rows = points(design, seed, n=n, dimensions=len(random), start=0, stop=n, block=0)
+    draws = Sample(quantities)  # in this order
     with np.errstate(all="ignore"):  # a draw that overflows is infinite, which is refused
-        drawn = {
-            name: check_array(f"draws of {name}", quantities[name].ppf(column))
-            for name, column in zip(random, rows, strict=True)
-        }
-    draws = Sample()
-    for name, value in quantities.items():
-        draws[name] = drawn[name] if name in drawn else np.full(n, check_number(name, value))
+        for name, column in zip(random, rows, strict=True):
+            draws[name] = check_array(f"draws of {name}", quantities[name].ppf(column))
+    for name in quantities.keys() - random:
+        draws[name] = np.full(n, check_number(name, quantities[name]))
     draws.seed = seed
     draws.design = design
     return draws
@@ -233,12 +231,10 @@ def permuted(index: Words, n: int, key: Words) -> Words:
     Returns the images, (k,), uint64, < n, a new array.
     """
     # half of the bits of n - 1, rounded up: 4^half >= n
-    half = max((int(n - 1).bit_length() + 1) // 2, 1)
+    half = max(((n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)
-    outside = np.flatnonzero(result >= n)
-    while outside.size:
+    while (outside := np.flatnonzero(result >= n)).size:
         result[outside] = _feistel(result[outside], half, key)
-        outside = outside[result[outside] >= n]
     return result
 
 

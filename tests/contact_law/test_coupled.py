@@ -16,8 +16,9 @@ from refusals import each, refusals
 
 import viscoroll as vr
 from pipeline.evidence.measure.covers import MATERIALS
-from viscoroll.contact_mechanics.coupled_pair import CoupledBody, CoupledPair, CoupledRow
-from viscoroll.contact_mechanics.stress import layer_transforms, transforms
+from viscoroll.contact_mechanics.coupled_pair import CoupledBody, CoupledRow, pair_of_scene
+from viscoroll.contact_mechanics.stress import transforms
+from viscoroll.materials import layer_excess
 
 ELASTIC, ONE, THREE = MATERIALS.values()
 KAPPA = 4.0
@@ -99,13 +100,13 @@ def losses_by_transforms(pair, u, profile):
     k = np.logaddexp(0.0, s) / half
     p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
     total = np.zeros(k.size)
-    for body in pair.bodies:
+    for body in pair:
         J = sum(j / (1.0 - 1j * k * t * u) for j, t in zip(body.J, body.T)).imag
         local = (1.0 - 2.0 * body.nu) / (2.0 - 2.0 * body.nu)
         wave = np.minimum(k * body.thickness, 300.0)
-        L, T, C = (
-            layer_transforms(body.nu, wave) if math.isfinite(body.thickness) else (1.0, 1.0, local)
-        )
+        finite = math.isfinite(body.thickness)
+        L, shear, C = layer_excess(body.nu, wave) if finite else (0.0, 0.0, 0.0)
+        L, T, C = 1.0 + L, 1.0 + L + shear, local + C
         t = -q if body.side == "base" else q
         total += (
             body.share * J * (L * abs(p) ** 2 + T * abs(t) ** 2 - 2.0 * C * np.imag(p * np.conj(t)))
@@ -117,10 +118,10 @@ def losses_by_transforms(pair, u, profile):
 @pytest.mark.parametrize("cover", [BELT, *long(LINING, NIP, MIXED)])
 def test_friction_and_losses_of_the_bodies_take_the_power_of_the_loads(cover):
     scene = scene_of(cover)
-    pair = CoupledPair.of_scene(scene)
+    pair = pair_of_scene(scene)
     row = CoupledRow(pair, 0.35, MU, 144)
     found = row.states(CREEPS)
-    assert found.converged.all()
+    assert not found.status.any()
     power = found.kM_base + found.kM_cylinder + 0.5 * CREEPS * MU * found.Q_over_mu
     friction = 0.5 * (CREEPS * MU * found.Q_over_mu - found.work_base - found.work_cylinder)
     assert (friction >= -tol.COUPLED_POWER).all()
@@ -149,7 +150,7 @@ def random_pair(rng):
         bodies.append(
             CoupledBody(side, share, rng.uniform(0.0, 0.5), thickness, tuple(J), tuple(T))
         )
-    return CoupledPair(tuple(bodies)), *10.0 ** rng.uniform([-6.0, -1.7], [6.0, 0.0])
+    return tuple(bodies), *10.0 ** rng.uniform([-6.0, -1.7], [6.0, 0.0])
 
 
 @pytest.mark.long
@@ -161,7 +162,7 @@ def test_random_pairs_are_solved_and_refined_meshes_agree():
         creeps = rng.uniform(*coarse.onsets(), 4)
         one = coarse.states(creeps)
         other = CoupledRow(pair, u, mu, 110).states(creeps)
-        assert (one.converged & other.converged).all(), (pair, u, mu)
+        assert not np.concatenate([one.status, other.status]).any(), (pair, u, mu)
         assert (abs(one.Q_over_mu) <= 1.0).all()
         assert close(one.Q_over_mu, other.Q_over_mu, tol.COUPLED_Q, scale=1.0)
         moments = (each.kM_base + each.kM_cylinder for each in (one, other))
@@ -170,7 +171,7 @@ def test_random_pairs_are_solved_and_refined_meshes_agree():
 
 
 def test_rest_and_the_fastest_speed_are_elastic():
-    pair = CoupledPair.of_scene(scene_of(BELT))
+    pair = pair_of_scene(scene_of(BELT))
     for ends in ((1e-9, 0.0), (1e12, math.inf)):
         near, limit = (CoupledRow(pair, u, MU).states(CREEPS) for u in ends)
         assert close(near.Q_over_mu, limit.Q_over_mu, tol.COUPLED_EDGES, scale=1.0)
@@ -192,12 +193,13 @@ def test_tractions_carry_load_and_creep_force():
 
 def test_depth_is_that_of_the_surface_in_the_middle():
     cover = vr.Cover(ELASTIC, nu=0.3, thickness=0.5, on="base")
-    row = CoupledRow(CoupledPair.of_scene(scene_of(cover)), 0.0, MU)
+    row = CoupledRow(pair_of_scene(scene_of(cover)), 0.0, MU)
     profile = row.profile(0.05)
     k = np.linspace(1e-9, 600.0, 20001)
-    L, _, C = layer_transforms(0.3, np.minimum(0.5 * k, 300.0))
+    L, _, C = layer_excess(0.3, np.minimum(0.5 * k, 300.0))
     p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
-    middle = np.trapezoid((L * p / k + 1j * C * q / k).real, k) / np.pi
+    C += (1.0 - 0.6) / (2.0 - 0.6)
+    middle = np.trapezoid(((1.0 + L) * p / k + 1j * C * q / k).real, k) / np.pi
     found = coupled(scene_of(cover), 0.0, delta=0.5 * 0.05 / KAPPA, fields="depth").depth
     assert close(KAPPA * found, middle + 0.5 * profile.shift**2, tol.COUPLED_DEPTH)
 

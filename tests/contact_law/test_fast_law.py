@@ -38,7 +38,7 @@ def test_onsets_lie_unlike_far_from_free_rolling(index):
     _, scene, u = covers.scenes()[index]
     V = u / covers.KAPPA
     found = scene.contact(V, delta=0.0, fields=("delta_minus", "delta_plus", "delta_star"))
-    true = covers.CoupledRow(covers.CoupledPair.of_scene(scene), u, float(scene.mu)).onsets()
+    true = covers.CoupledRow(covers.pair_of_scene(scene), u, float(scene.mu)).onsets()
     onsets = np.array([found.delta_minus, found.delta_plus])
     exact = 0.5 * np.array(true) / covers.KAPPA
     assert close(onsets, exact, tol.COVER_ONSETS, scale=found.delta_star)

@@ -16,7 +16,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll import tables
-from viscoroll.contact_mechanics.coupled_pair import CoupledPair
+from viscoroll.contact_mechanics.coupled_pair import pair_of_scene
 from viscoroll.contact_mechanics.coupled_tables import measure_errors
 from viscoroll.laws.law_netcdf import law_as_dataset
 
@@ -45,7 +45,7 @@ def scene():
 
 @pytest.mark.parametrize(("material", "mu", "count"), [(BELT, 0.3, 40), (BOTH_SLIP, 0.2, 80)])
 def test_table_holds_states_beside_its_nodes(material, mu, count):
-    pair = CoupledPair.of_scene(scene_of(material, mu))
+    pair = pair_of_scene(scene_of(material, mu))
     found = measure_errors(law_of(material, mu).coupled, pair, count, 7)
     assert found["Q_over_mu"] < tol.TABLE_Q
     assert found["M_half_space"] + found["M_cylinder"] < tol.TABLE_M

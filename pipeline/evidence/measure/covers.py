@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.contact_mechanics.coupled_pair import CoupledPair, CoupledRow
+from viscoroll.contact_mechanics.coupled_pair import CoupledRow, pair_of_scene
 
 from ...stage import Row, read_toml
 from ..results import run
@@ -93,11 +93,11 @@ def energy(scene: vr.Scene, V: float, state) -> tuple[float, float]:
 def compared(scene: vr.Scene, u: float, creeps: int) -> Compared:
     """Return the errors of a scene at kappa |V| = u, over so many creepages."""
     mu = float(scene.mu)
-    row = CoupledRow(CoupledPair.of_scene(scene), u, mu)
+    row = CoupledRow(pair_of_scene(scene), u, mu)
     low, high = row.onsets()
     creep = 0.5 * (low + high) + _REACH * 0.5 * (high - low) * np.linspace(-1.0, 1.0, creeps)
     true = row.states(creep)
-    if not true.converged.all():
+    if true.status.any():
         raise vr.ConvergenceError(f"the coupled solution of {scene}")
     V = u / KAPPA
     found = vr.contact(scene, V, delta=0.5 * creep / KAPPA)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from viscoroll.contact_mechanics.coupled_pair import CoupledPair, CoupledRow
+from viscoroll.contact_mechanics.coupled_pair import CoupledRow, pair_of_scene
 
 from ...stage import ROOT, Row, read_rows
 from ..results import run
@@ -104,7 +104,7 @@ def bentall():
     pair = vr.Bodies(
         elastic, elastic, share=base / (base + cylinder), poisson=(STEEL[1], ALUMINIUM[1])
     )
-    kernels = CoupledPair.of_scene(vr.Scene(material=pair, kappa=1.0, mu=1.0))
+    kernels = pair_of_scene(vr.Scene(material=pair, kappa=1.0, mu=1.0))
     off = []
     for row in rows:
         states = CoupledRow(kernels, 1.0, row["mu"])

@@ -14,7 +14,7 @@ from .contact_table import Contacts as Contacts
 from .contact_table import evaluate_law as evaluate_law
 from .contact_table import pure_rolling_fields as pure_rolling_fields
 from .contact_table import refuse_beyond as refuse_beyond
-from .coupled_pair import CoupledPair as CoupledPair
+from .coupled_pair import pair_of_scene as pair_of_scene
 from .coupled_tables import coupled_law as coupled_law
 from .coupled_tables import measure_errors as measure_errors
 from .coupled_tables import refuse_several_tables as refuse_several_tables

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..core import SI, Floats, check_number
 from ..laws.law_table import law_table
-from ..materials import Cover, Measured, Pair
+from ..materials import Measured, Pair
 from .assumptions import (
     LEAST_KAPPA,
     MISFIT_LIMIT,
@@ -50,18 +50,18 @@ _WAVES = 4000
 _DEPTHS = 81
 
 
-def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
+def assess_strain(data: Any, V: Any, length: Any) -> Assumption:
     """Compare the amplitude of engineering shear strain at the axis with that of the data of the
     bodies.
 
     data: the bodies, a :class:`BodyData`.
-    V, length: speed, m/s, and contact length, m, arrays of one shape; load: N/m, which broadcasts
-    with them.
+    V, length: speed, m/s, and contact length, m, arrays of one shape, which broadcasts with the
+        load.
     Returns the assumption ``strain``, whose value is the strain of the softest body, dimensionless;
     it holds where that of each body with data is between a third and three times the strain of its
     data, and is undecided without such.
     """
-    strains = _strains(data, V, length, load)
+    strains = _strains(data, V, length)
     value = np.max(np.broadcast_arrays(*strains.values()), axis=0)
     sentence = f"the strain of the contact is up to {100.0 * largest(value):.2g} %"
     known = {
@@ -81,18 +81,17 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
     return Assumption(holds, value, f"{sentence}; a third to three times that strain is allowed")
 
 
-def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
+def _strains(data: Any, V: Any, length: Any) -> dict[str, Any]:
     """Return the amplitude of the engineering shear strain at the axis in each deformable body.
 
     data: the bodies, a :class:`BodyData`.
-    V, length: speed, m/s, and contact length, m, arrays of one shape.
-    load: N/m, broadcasts with them.
+    V, length: speed, m/s, and contact length, m, arrays of one shape, which broadcasts with the
+        load.
     Returns name of the body ("the material" where both are alike, as thick and measured alike) ->
     strain, dimensionless, in the broadcast shape.
     """
-    pair = data.pair
     slenderness = 0.25 * length / data.R
-    if pair is None:  # both of the paper's material
+    if data.pair is None:  # both of the paper's material
         return {
             "the material": 0.5 * SHEAR * slenderness * _modulus_over_shear(data.nu, data.plane)
         }
@@ -116,7 +115,7 @@ def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
         if body.thickness is not None:
             part = np.interp(0.5 * length / body.thickness, _THETA, _layer_shear(body.nu))
             # the peak of the elliptic pressure of the load is 4 P/(pi length)
-            found[name] = part * 4.0 * load / (math.pi * length * G[name])
+            found[name] = part * 4.0 * data.load / (math.pi * length * G[name])
     return found
 
 
@@ -149,15 +148,15 @@ def _layer_shear(nu: float) -> Floats:
         z = np.linspace(0.0, min(2.5 * a, 1.0), _DEPTHS)[:, None]
         s = np.minimum(k, 25.0)
         # beyond k h = 25 cosh and sinh overflow the digits, and the layer is a half-space
-        kz = np.minimum(k, 25.0) * z
+        kz = s * z
         B, D = _layer_terms(s, nu)
         cosh = np.cosh(kz)
         sinh = np.sinh(kz)
         # f and f''/k^2 for A = 1, C = -B
         f = (1.0 + B * kz) * cosh + (D * kz - B) * sinh
         bend = (1.0 + B * kz + 2.0 * D) * cosh + (D * kz + B) * sinh
-        deep = k > s  # a half-space to rounding
-        difference = np.where(deep, 2.0 * k * z * np.exp(-k * z), f + bend)
+        # a half-space to rounding, where k > s
+        difference = np.where(k > s, 2.0 * k * z * np.exp(-k * z), f + bend)
         # dk = k d ln k, in equal steps of ln k, cancels 1/k of the pressure
         shear = 0.5 * difference @ j1(k * a) * np.log(k[1] / k[0])
         found[n] = np.abs(shear).max()
@@ -173,8 +172,12 @@ def _layer_terms(s: Floats, nu: float) -> tuple[Floats, Floats]:
     Returns (B, D), (n,) each, dimensionless.
     """
     # of (1 - nu) f_zz + nu k^2 f = 0 and (1 - nu) f_zzz = (2 - nu) k^2 f_z at z = h
-    own = (1.0 - 2.0 * nu) * np.sinh(s) ** 2 + 2.0 * (1.0 - nu) * np.cosh(s) ** 2
-    det = ((1.0 - 2.0 * nu) * np.sinh(s)) ** 2 - (2.0 * (1.0 - nu) * np.cosh(s)) ** 2 - s * s
+    a = 1.0 - 2.0 * nu
+    b = 2.0 * (1.0 - nu)
+    sinh = np.sinh(s)
+    cosh = np.cosh(s)
+    own = a * sinh**2 + b * cosh**2
+    det = (a * sinh) ** 2 - (b * cosh) ** 2 - s * s
     return (s - (1.5 - 2.0 * nu) * np.sinh(2.0 * s)) / det, own / det
 
 
@@ -211,23 +214,23 @@ class BodyData:
     ----------
     pair : both bodies; None where both are of the paper's material, one of a single relaxation
         time.
-    G : long-time shear modulus of the paper's material, Pa, a number or (n,); None with a pair.
+    E, nu : long-time Young's modulus, Pa, and Poisson's ratio of the paper's material, numbers or
+        (n,); not used with a pair.
     R, l0 : radius and contact length at rest, m, numbers or (n,).
     T_ref : unit of time of the scene, s.
     plane : "strain" or "stress".
     scene : the dimensionless scene.
-    nu : Poisson's ratio of the paper's material; None with a pair.
     load : N/m, a number or (n,).
     """
 
     pair: Pair | None
-    G: Any
+    E: Any
+    nu: Any
     R: Any
     l0: Any
     T_ref: float
     plane: str
     scene: Parameters
-    nu: Any
     load: Any
 
     @cached_property
@@ -275,16 +278,16 @@ class BodyData:
         if not records or series is None:
             return None
         lowest, highest = zip(*(data.transit_band for data in records), strict=True)
-        low = max(lowest) * self.T_ref
-        high = min(highest) * self.T_ref
+        ends = np.array([max(lowest), min(highest)]) * self.T_ref
         if self.scene.cover is not None:
             u = np.exp2(_OCTAVES_OF_SPEED)
             (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
             # the transit frequency |V|/(lam l0) is u/lam, from which u = |V|/l0 is looked up
-            low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
+            ends = np.exp(np.interp(np.log(ends), np.log(u / lam), np.log(u)))
         else:
-            low, high = transit_speeds(series, np.array([low, high])).tolist()
-        return low / self.T_ref, high / self.T_ref
+            ends = transit_speeds(series, ends)
+        low, high = (ends / self.T_ref).tolist()
+        return low, high
 
     @cached_property
     def measured_speeds(self) -> tuple[float, float] | None:
@@ -308,19 +311,16 @@ class BodyData:
         """Whether no contact at rest is longer than the radius: whether every kappa is at least
         1.
         """
-        return float(np.min(self.scene.kappa, initial=math.inf)) >= LEAST_KAPPA
+        return bool(np.all(self.scene.kappa >= LEAST_KAPPA))
 
     @cached_property
     def in_metres(self) -> bool:
         """Whether lengths seem to be in m; False where a radius or the thickness of a layer looks
         like one in mm: it is large, and the contact length of this load is short beside it.
         """
-        limits = [(self.R, _LARGE_R, _SHORT_OVER_R)]
-        if self.pair is not None:
-            layers = self.pair.cylinder.thickness, self.pair.half_space.thickness
-            limits += [
-                (h, _LARGE_THICKNESS, _SHORT_OVER_THICKNESS) for h in layers if h is not None
-            ]
+        layers = [body.thickness for body, _ in self.bodies.values() if body.thickness is not None]
+        limits = [(h, _LARGE_THICKNESS, _SHORT_OVER_THICKNESS) for h in layers]
+        limits.append((self.R, _LARGE_R, _SHORT_OVER_R))
         return not any(
             np.any((size >= least) & (self.l0 < part * size)) for size, least, part in limits
         )
@@ -334,7 +334,7 @@ class BodyData:
         where kappa lam is below 1/4.  False for half-spaces, on which the contact is then longer
         than the radius (:attr:`small_at_rest`), and for many covers.
         """
-        if not isinstance(self.scene.material, Cover) or self.scene.material.shape:
+        if self.scene.cover is None or self.scene.cover.shape:
             return False
         return float(np.min(self.scene.kappa * self.relative_length(0.0))) < _ABSURD
 
@@ -351,7 +351,10 @@ class BodyData:
         if self.soft_for_load or not (self.small_at_rest and self.in_metres):
             bands.append(NO_SPEEDS)
         known = [band for band in bands if band]
-        return (max(low for low, _ in known), min(high for _, high in known)) if known else None
+        if not known:
+            return None
+        lowest, highest = zip(*known, strict=True)
+        return max(lowest), min(highest)
 
     @cached_property
     def wave_speed(self) -> float | None:
@@ -388,15 +391,14 @@ class BodyData:
         softest body is among the known ones.  Rigid bodies do not count.  Like bodies of one
         material count as one, "the material".
         """
-        bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, None)]
-        if self.pair is not None:
-            first = self.pair.cylinder
-            second = self.pair.half_space
-            one = ("the cylinder", first.G, first.density)
-            bodies = [one, ("the base", second.G, second.density)]
+        if self.pair is None:
+            bodies: list[Any] = [("the material", self.E / (2.0 * (1.0 + self.nu)), None)]
+        else:
+            one = self.pair.cylinder
+            other = self.pair.half_space
+            bodies = [("the cylinder", one.G, one.density), ("the base", other.G, other.density)]
             if self.pair.like:
-                either = second.density if first.density is None else first.density
-                bodies = [("the material", first.G, either)]
+                bodies = [("the material", one.G, one.density or other.density)]
             bodies = [body for body in bodies if not np.all(np.isinf(body[1]))]
         if density is not None:
             bodies[0] = (*bodies[0][:2], density)
@@ -452,7 +454,7 @@ class BodyData:
                 f"the state is taken as {kind}; the load is {weights[1]:.3g} times the weight m g, "
                 "g = 9.81 m/s2",
             ),
-            strain=assess_strain(self, V, length, self.load),
+            strain=assess_strain(self, V, length),
         )
 
 
@@ -475,9 +477,7 @@ def extent_of(values: Any) -> tuple[float, float]:
 
     NaN is ignored; (0.0, 0.0) if there is no other number.
     """
-    low = float(np.fmin.reduce(values, axis=None, initial=np.nan))
-    return (
-        (0.0, 0.0)
-        if low != low
-        else (low, float(np.fmax.reduce(values, axis=None, initial=np.nan)))
+    low, high = (
+        float(extreme.reduce(values, axis=None, initial=np.nan)) for extreme in (np.fmin, np.fmax)
     )
+    return (0.0, 0.0) if math.isnan(low) else (low, high)

@@ -7,7 +7,6 @@ doi:10.1007/s00707-020-02643-5.
 """
 
 import ctypes
-import math
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, Literal, overload
@@ -30,13 +29,14 @@ from ..core import (
 )
 from ..kernels.records import Loads, LoadsAndSlopes
 from ..laws import LawGrid
-from ..materials import Cover
 from .assumptions import moment_error, transit_frequency
-from .contact_table import ACCURACY, NOT_IN_GRIDS, evaluate_contact, field_names, refuse_overflow
+from .contact_table import evaluate_contact, field_names, refuse_overflow
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model
 
 # --- The state of the contact ---
+
+Method = Literal["table", "direct", "coupled"]
 
 
 @overload
@@ -47,7 +47,7 @@ def contact(
     delta: Numbers,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
-    method: Literal["table", "direct", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values: ...
 @overload
 def contact(
@@ -57,7 +57,7 @@ def contact(
     omega: Numbers,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
-    method: Literal["table", "direct", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values: ...
 def contact(
     roller: Roller,
@@ -67,7 +67,7 @@ def contact(
     omega: Numbers | None = None,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
-    method: Literal["table", "direct", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values:
     """Compute contact length, creep force and rolling moment of a viscoelastic cylinder that rolls
     on a half-space.
@@ -219,51 +219,38 @@ def contact(
     """
     _, scene, scale = resolve_model(roller, "contact")
     creep_name = check_one_given(delta=delta, omega=omega)
-    if slopes is not False:
-        slopes = check_bool("slopes", slopes)
-    like = scene.like_bodies
-    cover = scene.tabulated or isinstance(scene.material, Cover)
-    names = field_names(fields, slopes, method, like=like, si=scale.si, cover=cover)
-    if fields is None and scene.gridded:
-        names = tuple(name for name in names if name not in NOT_IN_GRIDS)
+    slopes = check_bool("slopes", slopes)
+    names = field_names(fields, slopes, method, scene, scale.si)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
-    creep, _ = check_array_extent(creep_name, given[creep_name])
+    creep = check_array(creep_name, given[creep_name])
     given = {"V": speed, creep_name: creep}
-    about = None
     if scale.si:
         warn_of_contact(roller, speed, ends)
-        about = roller.about
         speed = divide_by_unit("V", speed, scale["V"])
         creep = divide_by_unit(creep_name, creep, scale[creep_name])
     if method == "coupled":
         from .stress import evaluate_coupled
 
-        found = evaluate_coupled(
-            scene, speed, creep=creep, creep_is_omega=delta is None, names=names
-        )
+        found = evaluate_coupled(scene, speed, creep, delta is None, names)
     else:
-        found = evaluate_contact(
-            scene, speed, creep=creep, creep_is_omega=delta is None, names=names, method=method
-        )
+        found = evaluate_contact(scene, speed, creep, delta is None, names, method)
     if scale.si:
-        if ACCURACY in found:
+        if "M_error" in found:
             # until here M_error has the values of lam
-            frequency = transit_frequency(given["V"], found[ACCURACY] * scale["length"])
-            found[ACCURACY] = moment_error(frequency, roller.body_data.records)[()]
+            frequency = transit_frequency(given["V"], found["M_error"] * scale["length"])
+            found["M_error"] = moment_error(frequency, roller.body_data.records)[()]
         found = {
             name: value * scale[name] if name in DIMENSIONS else value
             for name, value in found.items()
         }
-    return Values(found, given, si=scale.si, labels=labels, about=about)
+    return Values(found, given, si=scale.si, labels=labels, about=roller.about)
 
 
 # --- The law of one scene for integrators ---
 
 #: Types that the compiled function takes; others go through :func:`contact`.
 _NUMBERS = frozenset({float, int, np.float64})
-#: (lowest, highest) |V| between which nothing is warned of, where nothing is known of the bodies.
-_EVERY_SPEED = 0.0, math.inf
 #: Makes :class:`Loads` from four numbers, faster than its constructor.
 _loads = partial(tuple.__new__, Loads)
 #: Makes :class:`LoadsAndSlopes` from ten numbers.
@@ -289,6 +276,11 @@ class Law:
     True
     """
 
+    #: (lowest, highest) |V| between which nothing is warned of, in the unit of V.  Where nothing is
+    #: known of the bodies these are all speeds.
+    _covered = 0.0, np.inf
+    _jitted: Any
+
     def __init__(self, roller: Roller) -> None:
         """Check that ``roller`` is one scene or cylinder of one material, and compile its law.
 
@@ -297,10 +289,10 @@ class Law:
         Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape
         (1,)), for an array of materials, for times of a material beyond 1e-100 to 1e100 T_ref, and
         for a layer too thin for its law.  Sets ``roller``, ``scene``, ``_kappa`` (kappa over the
-        unit of V), ``_covered``,
-        and the attributes of :meth:`_use`.
+        unit of V), ``_covered``, ``_jitted`` (the compiled law, a :class:`.Jitted`), and
+        ``_output``, the type of the buffer of ten doubles for its results.
         """
-        from ..kernels.law.law_callables import Jitted, pack_scenes
+        from ..kernels.law.law_callables import Jitted, ResultBuffer, pack_scenes
 
         _, scene, scale = resolve_model(roller, "law")
         refuse_arrays(
@@ -310,34 +302,16 @@ class Law:
         assert table is not None
         self.roller = roller
         self.scene = scene
-        self._kappa = np.asarray(scene.kappa / scale["V"])
-        #: (lowest, highest) |V| between which nothing is warned of, in the unit of V
-        self._covered = (roller.body_data and roller.body_data.covered_speeds) or _EVERY_SPEED
-        if table.coupled is not None:
+        self._kappa = scene.kappa / scale["V"]
+        self._covered = (roller.body_data and roller.body_data.covered_speeds) or self._covered
+        self._output = ResultBuffer
+        if table.coupled is None:
+            scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
+            self._jitted = Jitted(scenes, table)
+        else:
             from ..kernels.law.spline_law import jitted_table
 
-            self._use(jitted_table(table.record.table, table, scene.kappa, scene.mu, scale))
-            return
-        scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
-        self._use(Jitted(scenes, table))
-
-    def _use(self, jitted: Any) -> None:
-        """Keep the compiled law for calls, as attributes of this object; for the constructors of a
-        scene and of a grid.
-
-        jitted: the :class:`.Jitted` law, of a scene or a grid, which has the C function
-            (``function``) and the addresses of its user data for results without slopes (``plain``)
-            and with slopes (``address``).
-        Sets ``_jitted`` (the law), ``_function``, ``_plain`` and ``_sloped`` (these three), and
-        ``_output``, the type of the buffer of ten doubles for the results.  Returns None.
-        """
-        from ..kernels.law.law_callables import ResultBuffer
-
-        self._jitted = jitted
-        self._output = ResultBuffer
-        self._function = jitted.function
-        self._plain = jitted.plain
-        self._sloped = jitted.address
+            self._jitted = jitted_table(table.record.table, table, scene.kappa, scene.mu, scale)
 
     @overload
     def __call__(  # type: ignore[overload-overlap]
@@ -400,15 +374,16 @@ class Law:
             slopes = check_bool("slopes", slopes)
         if type(V) not in _NUMBERS or type(omega) not in _NUMBERS:
             return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+        jitted = self._jitted
         out = self._output()
         try:
-            status = self._function(V, omega, out, self._sloped if slopes else self._plain)
+            status = jitted.function(V, omega, out, jitted.address if slopes else jitted.plain)
         except ctypes.ArgumentError:  # an integer beyond the doubles
             status = 1
         if status:
             self._refuse(check_array("V", V), check_array("omega", omega))
         low, high = self._covered
-        if abs(V) < low or abs(V) > high:
+        if not low <= abs(V) <= high:
             warn_of_contact(self.roller, V, (V, V))
         return _loads_and_slopes(out) if slopes else _loads(out[:4])
 
@@ -489,12 +464,13 @@ class _LawOfGrid(Law):
 
         Of the :class:`LawGrid`, which becomes ``roller``, ``rows`` and ``R`` are read.
         """
+        from ..kernels.law.law_callables import ResultBuffer
         from ..kernels.law.spline_law import jitted_table
 
         self.roller: Any = grid
-        self._covered = _EVERY_SPEED
         scale = {"V": 1.0, "omega": 1.0 / grid.R, "Q": 1.0, "M": 1.0}
-        self._use(jitted_table(grid.rows.vector, grid, 1.0, grid.rows.mu, scale))
+        self._output = ResultBuffer
+        self._jitted = jitted_table(grid.rows.vector, grid, 1.0, grid.rows.mu, scale)
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         """Return the law at arrays, one state after another, because the compiled law takes one
@@ -508,14 +484,12 @@ class _LawOfGrid(Law):
         Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or
         infinite input, and for shapes that do not broadcast.
         """
-        evaluate = np.vectorize(
-            lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 10
-        )
+        evaluate = np.vectorize(partial(self, slopes=True), otypes=[float] * 10)
         plain, labels = strip_labels({"V": V, "omega": omega}, self.roller.scale)
         speeds = {name: check_array(name, each) for name, each in plain.items()}
         broadcast_shape(**speeds)
         rows = (each[()] for each in evaluate(*speeds.values()))
-        found = dict(zip(kind._fields, rows, strict=False))
+        found = dict(zip(kind._fields, rows))
         return kind(**Values(found, labels=labels).as_dict())
 
     def _refuse(self, V: Floats, omega: Floats) -> None:
@@ -577,6 +551,4 @@ def law(roller: Roller | LawGrid) -> Law:
     >>> loads.Q > 0.0
     True
     """
-    if isinstance(roller, LawGrid):
-        return _LawOfGrid(roller)
-    return Law(roller)
+    return _LawOfGrid(roller) if isinstance(roller, LawGrid) else Law(roller)

@@ -66,36 +66,27 @@ SLOPES_OF_COVERS = ("dM_ddelta", "dM_domega", "dM_half_space_domega", "dM_cylind
 _ALL_SLOPES = SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS
 #: Added mass of slow speed changes.
 UNSTEADY = "N"
-#: Friction reserve 1 - |Q|/mu.
-GRIP = "grip"
-#: Creepage of free rolling of a cover, in which stick and the strain by the pressure balance; 0 for
-#: half-spaces.
-FREE_CREEP = "delta_0"
-#: Approach of the bodies, of layers on rigid ground.
-DEPTH = "depth"
 #: Creepages at which full slip begins: default fields of method "coupled".
 ONSETS = ("delta_minus", "delta_plus")
 #: Fields that the law of a grid of another program does not have.
 NOT_IN_GRIDS = ("beta", "epsilon", "lam", "length", "zeta", "full_slip", "delta_star", *ONSETS)
 #: Fields that method "coupled" alone has, with the default ones first.
-OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
-#: Accuracy of M by the data of the materials, of a cylinder in SI units alone.
-ACCURACY = "M_error"
+OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", "depth")
 #: Field -> the field of which it is a multiple, or from which it follows: the length is lam times
 #: l0, C_rr is M/(P R).
-_MULTIPLES = {"length": "lam", "C_rr": "M", ACCURACY: "lam"}
+_MULTIPLES = {"length": "lam", "C_rr": "M", "M_error": "lam"}
 #: Field of like bodies -> the field of which it is half.
-_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
+_HALVES = dict.fromkeys(OF_BODIES, "M") | dict.fromkeys(SLOPES_OF_BODIES, "dM_dV")
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
 _KNOWN = (
     *(*FIELDS, *OF_BODIES, *_ALL_SLOPES),
-    *(UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *ONSETS, *OF_COUPLED),
+    *(UNSTEADY, "grip", "delta_0", *_MULTIPLES, *ONSETS, *OF_COUPLED),
 )
 
 
 def field_names(
-    fields: Iterable[str] | None, slopes: bool, method: str, *, like: bool, si: bool, cover: bool
+    fields: Iterable[str] | None, slopes: bool, method: str, scene: Parameters, si: bool
 ) -> tuple[str, ...]:
     """Return the names of the fields that a call of :func:`.contact.contact` has to return, in
     their order.
@@ -108,12 +99,12 @@ def field_names(
     method : "table"; "direct" (the printed equations), which has no slopes, N, grip, delta_0 and
         onsets; or "coupled", which has no slopes and no N, and alone has :data:`OF_COUPLED`, of
         which all but the depth are default fields, as are the onsets.
-    like : whether both bodies are of one material; if not, the parts of M in either body are
-        default fields, and ``slopes`` adds their slopes.
+    scene : dimensionless parameters of the roller.  The parts of M in either body of two materials
+        are default fields, and ``slopes`` adds their slopes.  Where the law has a cover or a table
+        of the coupled solution ``delta_0`` is a default field, and N is not available.  Of a grid
+        only fields that it contains are default fields.
     si : whether the roller is a cylinder, in SI units; ``length``, ``C_rr`` and the parts of M are
         then default fields.
-    cover : whether a body is a cover, a layer of finite thickness; ``delta_0`` is then a default
-        field, and N is not available.
 
     Returns
     -------
@@ -128,18 +119,20 @@ def field_names(
         with "coupled", and its own fields without it; N of a cover.
     """
     check_choice("method", method, "table", "direct", "coupled")
+    like = scene.like_bodies
+    cover = scene.tabulated or scene.cover is not None
     if fields is not None:
         names = check_names(
-            "fields", fields, _KNOWN if si else [x for x in _KNOWN if x != ACCURACY], "a field"
+            "fields", fields, _KNOWN if si else [x for x in _KNOWN if x != "M_error"], "a field"
         )
     elif si:
         names = ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)
     else:
-        names = FIELDS if like else (*FIELDS, *OF_BODIES)
+        names = FIELDS + OF_BODIES * (not like)
     if slopes:
-        more = SLOPES + (() if like else SLOPES_OF_BODIES) + (SLOPES_OF_COVERS if cover else ())
+        more = SLOPES + SLOPES_OF_BODIES * (not like) + SLOPES_OF_COVERS * cover
         names += tuple(name for name in more if name not in names)
-    added: tuple[str, ...] = (FREE_CREEP,) if cover else ()
+    added = ("delta_0",) * cover
     if method == "coupled":
         allowed = "left out: method 'coupled' computes no derivatives and no added mass N"
         refuse_fields(names, (*_ALL_SLOPES, UNSTEADY), allowed)
@@ -150,7 +143,7 @@ def field_names(
             if not set(_ALL_SLOPES).isdisjoint(names):
                 allowed = "'table' for derivatives, which method 'direct' does not compute"
                 raise ParameterError("method", "'direct'", allowed)
-            only_table = (UNSTEADY, GRIP, FREE_CREEP, *ONSETS)
+            only_table = (UNSTEADY, "grip", "delta_0", *ONSETS)
             refuse_fields(only_table, names, "left out, or computed with method='table'")
         if cover:
             allowed = (
@@ -158,7 +151,10 @@ def field_names(
                 "for those of a Dundurs' constant above 0.05"
             )
             refuse_fields((UNSTEADY,), names, allowed)
-    return tuple(dict.fromkeys(names + added)) if added and fields is None else names
+    if fields is not None:
+        return names
+    refused = NOT_IN_GRIDS if scene.gridded else ()
+    return tuple(name for name in dict.fromkeys(names + added) if name not in refused)
 
 
 def refuse_fields(names: Iterable[str], refused: Iterable[str], allowed: str) -> None:
@@ -216,19 +212,16 @@ def complete(
     Cylinder multiplies by their units, as it makes ``M_error`` of lam; parts of M that
     were not computed are half of M, their slopes half of dM_dV.
     """
-    found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
-    if computed != names:
-        found |= {
-            name: 0.5 * found[of]
-            for name, of in _HALVES.items()
-            if name in names and name not in found
-        }
-        found |= {name: found[of] for name, of in _MULTIPLES.items() if name in names}
-    if "full_slip" in names:
+    values: Any = rows.reshape(len(computed), *shape) if shape else rows[:, 0].tolist()
+    found = dict(zip(computed, values, strict=True))
+    for name in names:
+        if name in _MULTIPLES:
+            found[name] = found[_MULTIPLES[name]]
+        elif name not in found:
+            found[name] = 0.5 * found[_HALVES[name]]
+    if "full_slip" in found:
         found["full_slip"] = found["full_slip"] != 0.0
-    if not shape and computed == names:
-        return found
-    return {name: found[name].reshape(shape) if shape else found[name] for name in names}
+    return {name: found[name] for name in names}
 
 
 # --- The law at many states, in blocks on threads ---
@@ -295,13 +288,8 @@ def evaluate_contact(
     arrays["omega" if creep_is_omega else "delta"] = creep
     direct = method == "direct"
     fastest = _FASTEST_DIRECT if direct and "Q" in names else FASTEST
-    shape: tuple[int, ...] = ()
-    if V.ndim or creep.ndim or scene.shape:
-        arrays = {name: np.asarray(value) for name, value in arrays.items()}
-        shape = broadcast_shape(**arrays)
-        refuse_overflow(arrays["kappa"], V, fastest)
-    elif not abs(scene.kappa * float(V)) <= fastest:  # true of NaN too
-        refuse_overflow(np.asarray(scene.kappa), V, fastest)
+    shape = broadcast_shape(**arrays)
+    refuse_overflow(scene.kappa, V, fastest)
     if (scene.material is not None or scene.gridded) and direct:
         raise ParameterError(
             "method",
@@ -322,12 +310,7 @@ def evaluate_contact(
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
     rows = evaluate_law(
-        material,
-        [*arrays.values()],
-        shape=shape,
-        creep_is_omega=creep_is_omega,
-        names=computed,
-        direct=direct,
+        material, [*arrays.values()], shape, creep_is_omega, names=computed, direct=direct
     )
     return complete(names, computed, rows, shape)
 
@@ -370,10 +353,11 @@ def evaluate_law(
     ConvergenceError
         If an iteration of the printed equations reaches its limit.
     """
+    from ..kernels.law import contact_kernel
+    from ..kernels.law import law_record as states
+
     count = math.prod(shape)
-    loop, states = _kernel(direct)
     record: Any = material.record if isinstance(material, LawTable) else None
-    coupled = record is not None and record.table is not None
     rows = kernel_rows(names)
     out = np.empty((len(names), count))
 
@@ -387,44 +371,51 @@ def evaluate_law(
         with a LawTable.
         parts: kappa, mu, V and creep of these states, (stop - start,) or (1,) each, dimensionless,
         read-only.
-        Raises ConvergenceError if an iteration of the printed equations reaches its limit, and
-        ParameterError as :func:`_laws_of_block`.
+        Raises ConvergenceError if an iteration of the printed equations reaches its limit;
+        ParameterError for a material with times beyond 1e-100 to 1e100 T_ref, and for a layer that
+        is too thin.
         """
-        laws, order = (
-            ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
-        )
         kappa, mu, V, creep = parts
-        given = states.State(kappa=kappa, mu=mu, V=V, creep=creep, creep_is_omega=creep_is_omega)
+        # States without a law in common are ordered by material, or by octaves of alpha and speed,
+        # so that neighbours read the same numbers.  A record holds the law of one state at a time.
+        laws: Any = (record,)
+        order = _NO_ORDER
+        if isinstance(material, Prony | Bodies):
+            laws = (record_of_materials(material, alpha.astype(np.int64)),)
+            if alpha.size > 1:
+                order = np.argsort(alpha, kind="stable")
+        elif material is None and not direct:
+            laws = records_of_alphas(alpha, _ALPHAS_TOGETHER)
+            order = sort_by_octave(alpha, kappa, V)
+        given = states.State(kappa, mu, V, creep, creep_is_omega)
         request = states.Request(states=given, order=order, to=rows, out=out, first=start)
         scratch = np.empty(states.SCRATCH_SIZE)
-        if coupled:
+        if record and record.table is not None:
             from ..kernels.law.spline_law import table_loop
 
             table_loop(record.table, request, stop - start)
         elif direct:
-            if loop(laws, request, stop - start):
+            from ..kernels.law.printed_law import direct_loop
+
+            if direct_loop(alpha, request, stop - start):
                 raise ConvergenceError(
                     f"contact: method='direct' did not converge for one of the states {start} to "
                     f"{stop - 1}, counted from 0: use method='table'"
                 )
         elif names != (UNSTEADY,):
-            loop(laws, request, scratch, stop - start)
+            contact_kernel.contact_loop(laws, request, scratch, stop - start)
         if UNSTEADY not in names:
             return
         N = out[names.index(UNSTEADY), start:stop]
         if isinstance(material, LawTable):
             from ..kernels.motion.motion_law import unsteady_loop
 
-            unsteady_loop(material.unsteady_record, parts[0], parts[2], N)
+            unsteady_loop(material.unsteady_record, kappa, V, N)
         else:
             # the state has no table of N: its zeta, and N by the modes at that zeta
             zeta = np.empty((1, stop - start))
-            loop(
-                laws,
-                request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0),
-                scratch,
-                stop - start,
-            )
+            request = request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0)
+            contact_kernel.contact_loop(laws, request, scratch, stop - start)
             N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
     # few states of one law: no blocks, threads and readers, which would take longer than the states
@@ -441,54 +432,6 @@ def evaluate_law(
         block,
     )
     return out
-
-
-@lru_cache(maxsize=2)
-def _kernel(direct: bool) -> tuple[Any, Any]:
-    """Return the kernel that evaluates the law at many states.
-
-    direct: whether it solves the printed equations; else it reads the rows of the law.
-    Returns (the loop over states; the module :mod:`.law_record` with the types
-    of its arguments).  The loop of the printed equations is called as (alpha, request, count) and
-    returns a status, 0 if all states were solved; that of the rows as (laws, request, scratch,
-    count), and returns nothing.  The first call of a loop compiles it, unless this machine has done
-    so before.
-    """
-    from ..kernels.law import law_record as states
-
-    if direct:
-        from ..kernels.law.printed_law import direct_loop as loop
-    else:
-        from ..kernels.law.contact_kernel import contact_loop as loop
-    return loop, states
-
-
-def _laws_of_block(
-    material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool
-) -> tuple[Any, Any]:
-    """Make the laws of the states of a block, and choose the order in which the states are
-    evaluated.
-
-    Called where the states have no law in common, which would be evaluated in the order given.
-    material: many materials, or None: a law of one relaxation time for each state.
-    alpha: alphas of the states, or indices of their materials as floats, (n,) or (1,).
-    parts: kappa, mu, V, creep, each (n,) or (1,), dimensionless.
-    direct: whether the printed equations are solved, which need alpha alone.
-    Returns (laws, order).  The laws are a tuple of records that kernels take: one for materials,
-    and :data:`_ALPHAS_TOGETHER` for alphas; each holds the law of one state at a time.  If
-    ``direct`` they are ``alpha`` itself.  The order is an array of the indices of the states in the
-    order of evaluation, (n,), or empty for the order given.  States are ordered by material, or of
-    alphas by octaves of alpha and speed, so that neighbours read the same numbers; if ``direct``,
-    of one state, and of one material for all, the order is empty.
-    Raises ParameterError for a material with times beyond 1e-100 to 1e100 T_ref, and for a layer
-    that is too thin.
-    """
-    if material is not None:
-        order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
-        return (record_of_materials(material, alpha.astype(np.int64)),), order
-    if direct:
-        return alpha, _NO_ORDER
-    return records_of_alphas(alpha, _ALPHAS_TOGETHER), sort_by_octave(alpha, parts[0], parts[2])
 
 
 class Contacts(NamedTuple):
@@ -521,9 +464,7 @@ class Contacts(NamedTuple):
         Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it, and of a
         table; the float 0.0 of half-spaces.
         """
-        if self.law.moment_of_speed_alone:
-            return 0.0
-        return self.fields(V, 0.0, "delta_0")[0]
+        return 0.0 if self.law.moment_of_speed_alone else self.fields(V, 0.0, "delta_0")[0]
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
@@ -562,23 +503,24 @@ def refuse_beyond(law: LawTable, u: Any) -> None:
         raise OutOfTableError("kappa |V| (V in units of R/T_ref)", largest, 0.0, most)
 
 
-def refuse_overflow(kappa: Floats, V: Floats, fastest: float = FASTEST) -> None:
+def refuse_overflow(kappa: Any, V: Floats, fastest: float = FASTEST) -> None:
     """Raise ParameterError where kappa |V| exceeds its largest allowed value; else do nothing, as
     without elements.
 
-    kappa: slenderness R/l0, > 0, any shape.
+    kappa: slenderness R/l0, > 0, a number or an array of any shape.
     V: velocities divided by R/T_ref, any sign, finite; broadcasts with kappa.  V may be in another
         unit, as m/s, if kappa is divided by the size of one unit of the scene, R/T_ref, in it.
     fastest: largest allowed kappa |V|.
     The error states the largest kappa |V|.
     """
+    kappa = np.asarray(kappa)
     if not (kappa.size and V.size):
         return
     low, high = extent(V)
-    if float(extent(kappa)[1]) * float(max(-low, high)) <= fastest:
+    if extent(kappa)[1] * max(-low, high) <= fastest:
         return
     with np.errstate(over="ignore"):
-        largest = (kappa * np.abs(V)).max(initial=0.0)
+        largest = (kappa * np.abs(V)).max()
     if largest > fastest:
         allowed = f"at most {fastest:g}: reduce V"
         raise ParameterError("kappa |V| (V in units of R/T_ref)", f"{largest:g}", allowed)

@@ -1,4 +1,4 @@
-"""Steady rolling with pressure and shear solved together: :class:`CoupledPair`, and its states at
+"""Steady rolling with pressure and shear solved together: :class:`CoupledBody`, and its states at
 one speed by boundary elements (:class:`CoupledRow`).
 
 **Units.**  Everything is dimensionless.  Lengths are divided by l0, the contact length at rest of
@@ -103,21 +103,20 @@ def _memory(X: Floats) -> Floats:
     return found
 
 
-def _half_space(
-    instant: float, modes: list[tuple[float, float]], x: Floats
-) -> tuple[Floats, Floats]:
+def _half_space(body: Any, u: float, x: Floats) -> Floats:
     """Return the kernels of a half-space (module) at distances x ahead of a point load.
 
     Elastic, of compliance 1, the slope by a pressure is 1/(pi x), so that the kernel is (x ln|x| -
     x)/pi; the coupling is local, and its kernel is max(x, 0).  Each creep mode adds the memory of
     these (:func:`_memory`).
 
-    instant: instantaneous compliance.
-    modes: (strength, length u T) of each creep mode.
+    body, u: as of :func:`body_kernels`.
     x: distances divided by l0, all > 0 or all < 0, (n,).
-    Returns (kernel of the pressure, less the term instant x ln|x|/pi, which is singular at 0;
-    kernel of the coupling for a constant C of 1), (n,) each.
+    Returns the kernels of pressure, shear and coupling, (3, n).  Those of pressure and shear are
+    equal, and lack the term instant x ln|x|/pi, which is singular at 0, with the instantaneous
+    compliance.
     """
+    instant, modes = body.at_speed(u)
     normal = -instant * x / np.pi
     ramp = np.maximum(x, 0.0)
     coupling = instant * ramp
@@ -126,7 +125,8 @@ def _half_space(
         normal += strength * length / np.pi * (_memory(X) + X * np.log(np.abs(X)) - X)
         # the local coupling remembers the load behind it alone, X < 0
         coupling += strength * (length * np.expm1(np.minimum(X, 0.0)) + ramp)
-    return normal, coupling
+    # T = L = 1: shear strains a half-space as pressure tilts it
+    return np.array([normal, normal, body.local * coupling])
 
 
 @lru_cache(maxsize=4)
@@ -142,8 +142,7 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     """
     u, L, shear, C = layer_nodes(nu)
     k = u / thickness
-    size, _ = _fit()
-    phase = size[:, None] * k
+    phase = _fit()[0][:, None] * k
     small = phase < _SMALL_PHASE
     safe = np.where(small, 1.0, phase)
     # 1 - cos y = 2 sin^2(y/2) keeps its digits
@@ -155,28 +154,30 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     return k, phases, excess / (np.pi * thickness)
 
 
-def wave_compliance(instant: float, modes: list[tuple[float, float]], k: Floats) -> Any:
-    """Return the compliance under waves of the wave numbers ``k``, complex, (n,), of a body whose
-    compliance at rest is 1; ``instant``, ``modes``: as of :meth:`CoupledBody.at_speed`.
+def wave_compliance(body: Any, u: float, k: Floats) -> Any:
+    """Return the compliance of a body under waves, divided by that at rest.
+
+    body, u: as of :func:`body_kernels`.
+    k: wave numbers times l0, (n,).
+    Returns complex numbers, (n,).
     """
+    instant, modes = body.at_speed(u)
     compliance = np.full(k.size, complex(instant))
     for strength, length in modes:
         compliance += strength / (1.0 - 1j * k * length)
     return compliance
 
 
-def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float, float]]) -> Floats:
+def _layer(body: Any, u: float) -> Floats:
     """Return what a bonded layer adds to the kernels of a half-space (module), by integrals over
     the wave number with the complex compliance.
 
-    nu, thickness: Poisson's ratio of the layer, and its thickness divided by l0.
-    instant: instantaneous compliance, divided by the long-time one.
-    modes: (strength, length u T divided by l0) of each creep mode.
+    body, u: as of :func:`body_kernels`; a layer.
     Returns (2 signs of x, first +; 3 kernels: pressure, shear, coupling; n) at all |x| of
     :func:`_fit`, without terms linear in x.
     """
-    k, phases, excess = _phases(nu, thickness)
-    compliance = wave_compliance(instant, modes, k)
+    k, phases, excess = _phases(body.nu, body.thickness)
+    compliance = wave_compliance(body, u, k)
     # columns 0 to 2 are those of L - 1, T - 1 and C with the real part of the compliance, 3 to 5
     # with the imaginary part; the coupling, without -i sgn(k), takes them the other way round
     weights = np.concatenate([excess * compliance.real, excess * compliance.imag]).T
@@ -215,21 +216,15 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     """
     size, fit = _fit()
     instant, modes = body.at_speed(u)
-    values = np.zeros((2, 3, size.size))
-    for row, sign in enumerate((1.0, -1.0)):
-        normal, coupling = _half_space(instant, modes, sign * size)
-        # T = L = 1: shear strains a half-space as pressure tilts it
-        values[row, 0] = values[row, 1] = normal
-        values[row, 2] = body.local * coupling
+    values = np.array([_half_space(body, u, x) for x in (size, -size)])
     if math.isfinite(body.thickness):
-        values += _layer(body.nu, body.thickness, instant, modes)
+        values += _layer(body, u)
     values[:, 2] *= body.sign
     table = values.reshape(2, 3, BINS, DEGREE + 1) @ fit.T
     local = body.sign * body.share * body.local
     parts = [(local * strength, length) for strength, length in [(instant, 0.0), *modes]]
-    return BodyKernels(
-        body.share * table.transpose(2, 0, 1, 3), body.share * instant, np.array(parts)
-    )
+    table = np.ascontiguousarray(body.share * table.transpose(2, 0, 1, 3))
+    return BodyKernels(table, body.share * instant, np.array(parts))
 
 
 def growth(bodies: Any, times: Floats) -> Floats:
@@ -331,51 +326,46 @@ class CoupledBody(NamedTuple):
         return local_coupling(self.nu)
 
 
-class CoupledPair(NamedTuple):
-    """Both bodies of a roller, one record for each that deforms; equal pairs have one hash."""
+#: Both bodies of a roller, a record for each that deforms; equal pairs have one hash.
+CoupledPair = tuple[CoupledBody, ...]
 
-    bodies: tuple[CoupledBody, ...]
 
-    @classmethod
-    def of_scene(cls, scene: Any) -> CoupledPair:
-        """Return the pair of bodies of a roller.
+def pair_of_scene(scene: Any) -> CoupledPair:
+    """Return the pair of bodies of a roller.
 
-        scene: dimensionless parameters, a :class:`.parameters.Parameters`; its alpha or material is
+    scene: dimensionless parameters, a :class:`.parameters.Parameters`; its alpha or material is
         read.
-        Returns the :class:`CoupledPair`; without a material both are half-spaces of alpha, without
-        coupling.
-        Raises ParameterError for several materials, and for a grid, whose bodies are not known.
-        """
-        material = scene.material
-        if scene.gridded:
-            raise described_error("material", "is a grid of Q and M", "the bodies for this method")
-        if np.size(scene.alpha) != 1 or (material is not None and material.shape):
-            shape = np.shape(scene.alpha)
-            allowed = "a single material with method='coupled': make a call for each"
-            sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
-            name = "alpha" if material is None else "material"
-            raise ParameterError(name, shape, allowed, sentence)
-        if material is None:
-            material = series_of_alpha(float(np.asarray(scene.alpha).item()))
-        if isinstance(material, Bodies):
-            shares = {"base": 1.0 - material.share, "cylinder": material.share}
-            parts = [(side, share, *material.body(side)) for side, share in shares.items()]
-        else:
-            # like half-spaces: any nu will do, and 0.5 is that of bodies without coupling
-            parts = [(side, 0.5, material, 0.5, None) for side in ("base", "cylinder")]
-        made = [
-            CoupledBody(
-                side=side,
-                share=float(share),
-                nu=float(nu),
-                thickness=float(thickness or math.inf),
-                J=tuple(series.J.tolist()),
-                T=tuple(series.T.tolist()),
-            )
-            for side, share, series, nu, thickness in parts
-            if share > 0.0  # a rigid body has no part of the compliance
-        ]
-        return cls(tuple(made))
+    Returns a :class:`CoupledBody` for each that deforms; without a material both are half-spaces of
+    alpha, without coupling.
+    Raises ParameterError for several materials, and for a grid, whose bodies are not known.
+    """
+    material = scene.material
+    if scene.gridded:
+        raise described_error("material", "is a grid of Q and M", "the bodies for this method")
+    if np.size(scene.alpha) != 1 or scene.material_array is not None:
+        shape = np.shape(scene.alpha)
+        allowed = "a single material with method='coupled': make a call for each"
+        sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
+        name = "alpha" if material is None else "material"
+        raise ParameterError(name, shape, allowed, sentence)
+    if material is None:
+        material = series_of_alpha(np.asarray(scene.alpha).item())
+    if not isinstance(material, Bodies):
+        material = Bodies(material, material)
+    shares = {"base": 1.0 - material.share, "cylinder": material.share}
+    parts = [(side, share, *material.body(side)) for side, share in shares.items()]
+    return tuple(
+        CoupledBody(
+            side=side,
+            share=float(share),
+            nu=float(nu),
+            thickness=float(thickness or math.inf),
+            J=tuple(series.J.tolist()),
+            T=tuple(series.T.tolist()),
+        )
+        for side, share, series, nu, thickness in parts
+        if share > 0.0  # a rigid body has no part of the compliance
+    )
 
 
 class CoupledStates(NamedTuple):
@@ -400,11 +390,6 @@ class CoupledStates(NamedTuple):
     work_cylinder: Floats
     status: Floats
 
-    @property
-    def converged(self) -> Any:
-        """Whether each state was solved, (n,), bool."""
-        return self.status == 0.0
-
 
 class CoupledProfile(NamedTuple):
     """Tractions of one state, linear between the nodes of the elements.
@@ -412,14 +397,12 @@ class CoupledProfile(NamedTuple):
     nodes : x from the middle of the contact, divided by l0, ascending, (n,), of a motion along +x.
     shift : distance of the middle ahead of the axis, divided by l0.
     p, q : pressure and shear stress on the cylinder along +x, divided by E'/(4 pi kappa), (n,).
-    status : 0 where solved.
     """
 
     nodes: Floats
     shift: float
     p: Floats
     q: Floats
-    status: int
 
 
 class CoupledRow:
@@ -437,48 +420,44 @@ class CoupledRow:
         u: kappa |V|, >= 0, or infinite.
         mu: coefficient of friction, > 0.
         n: number of elements, to which those of an edge layer are added.
+        Raises ConvergenceError where full slip has no solution.
         """
         self.pair = pair
         self.u = u
         self.mu = mu
-        layer = edge_layer(pair.bodies, u)
+        layer = edge_layer(pair, u)
         # elements of the edge layer: its weight for each factor of e by which it is shorter
         self.n = n + round(
             0.5 * coupled_states.WEIGHT_OF_LAYER * math.log(max(_UNLAYERED / layer, 1.0))
         )
-        kernels = {body.side: body_kernels(body, u) for body in pair.bodies}
-        table = np.ascontiguousarray(sum(each.table for each in kernels.values()))
+        kernels = {body.side: body_kernels(body, u) for body in pair}
+        table: Any = sum(each.table for each in kernels.values())
         instant = math.fsum(each.instant for each in kernels.values())
         local = np.concatenate([each.local for each in kernels.values()])
-        # kernels by which M and work are divided: of the cylinder, or of the single body
-        own = kernels.get("cylinder", next(iter(kernels.values())))
-        coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = coupled_states.Row(
             both=BodyKernels(table, instant, local),
-            own=own._replace(table=np.ascontiguousarray(own.table)),
-            coupled=coupled,
+            # by these M and work are divided: those of the cylinder, or of the single body
+            own=kernels.get("cylinder", next(iter(kernels.values()))),
+            coupled=bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max()),
             split=len(kernels) == 2,
             cylinder="cylinder" in kernels,
             layer=layer,
         )
+        # states of full slip of the negative and of the positive sign
         self._full = np.zeros((2, coupled_states.COLUMNS))
         # a guess of the half length: that of elastic half-spaces of the instantaneous compliance
         length = 0.5 * math.sqrt(max(instant, 1e-3))
-        ends = [
-            coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
-            for sign, out in zip((-1.0, 1.0), self._full, strict=True)
-        ]
-        # kappa delta at the onset of full slip of negative and of positive sign
-        self._ends = [onset for onset, _ in ends]
-        # guesses that are the same for bodies that are swapped: the half length, column 9, and
-        # d ln(load)/d ln(half length), the second of each of the ends
-        self._length = 0.5 * float(self._full[0, 9] + self._full[1, 9])
-        self._slope = 0.5 * float(ends[0][1] + ends[1][1])
-
-    @property
-    def full_slip_status(self) -> Floats:
-        """Status of full slip of the negative and of the positive sign, (2,); 0 where solved."""
-        return self._full[:, 8]
+        # kappa delta at the onset of full slip of negative and of positive sign, and
+        # d ln(load)/d ln(half length) there
+        self._ends, slopes = zip(
+            *(
+                coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
+                for sign, out in zip((-1.0, 1.0), self._full, strict=True)
+            )
+        )
+        self.refuse_unsolved(self._full[:, 8], (-math.inf, math.inf))
+        # guesses that are the same for bodies that are swapped; the half length is column 9
+        self._guesses = 0.5 * float(self._full[:, 9].sum()), 0.5 * sum(slopes)
 
     def onsets(self) -> tuple[float, float]:
         """Return the reduced creepages 2 kappa delta at which full slip begins, (the negative, the
@@ -490,10 +469,8 @@ class CoupledRow:
         """Return the reduced creepage 2 kappa delta, between the onsets, at which a zone of slip of
         the other sign appears in the rear half of the contact.
         """
-        return 2.0 * float(
-            coupled_states.touch_creep(
-                self._row, self.mu, *self._ends, _ROUGH_ELEMENTS, self._length, self._slope
-            )
+        return 2.0 * coupled_states.touch_creep(
+            self._row, self.mu, *self._ends, _ROUGH_ELEMENTS, *self._guesses
         )
 
     def states(self, creeps: Any, at: Any = None, apart: bool = False) -> CoupledStates:
@@ -522,18 +499,16 @@ class CoupledRow:
             0.5 * given[inside],
             (given if at is None else at)[inside],
             self.n,
-            self._length,
-            self._slope,
+            *self._guesses,
             apart,
             out,
         )
         found[inside] = out
         lam, epsilon, Q, moment, work, own_moment, own_work, beta, status = found.T[:9].copy()
-        np.clip(Q, -1.0, 1.0, out=Q)  # beyond by rounding
         return CoupledStates(
             lam=lam,
             epsilon=epsilon,
-            Q_over_mu=Q,
+            Q_over_mu=np.clip(Q, -1.0, 1.0),  # beyond by rounding
             kM_base=moment - own_moment,
             kM_cylinder=own_moment,
             work_base=work - own_work,
@@ -547,12 +522,8 @@ class CoupledRow:
 
         It is found between the onsets by Brent's method, to an error of :data:`_FREE_CREEP_ERROR`.
         """
-        return float(
-            brentq(
-                lambda creep: self.states([creep]).Q_over_mu[0],
-                *self.onsets(),
-                xtol=_FREE_CREEP_ERROR,
-            )
+        return brentq(
+            lambda creep: self.states([creep]).Q_over_mu[0], *self.onsets(), xtol=_FREE_CREEP_ERROR
         )
 
     def profile(self, creep: float) -> CoupledProfile:
@@ -562,37 +533,30 @@ class CoupledRow:
             fully.
         Returns the :class:`CoupledProfile`: between the nodes, which the kernel places, both
         stresses are linear, at both ends of the contact 0, and they are scaled so that the pressure
-        bears the load.  Where no solution was found ``status`` is not 0, and the numbers are
-        meaningless.
+        bears the load.
+        Raises ConvergenceError where no solution was found.
         """
         low, high = self.onsets()
-        slips = not low < creep < high
         out = np.zeros(coupled_states.COLUMNS)
         sign = 1.0 if creep >= high else -1.0
-        d = np.inf if slips else 0.5 * creep
-        found = coupled_states.solve_one(
-            self._row, self.mu, d, self.n, self._length, self._slope, sign, out
-        )
+        d = 0.5 * creep if low < creep < high else np.inf
+        found = coupled_states.solve_one(self._row, self.mu, d, self.n, *self._guesses, sign, out)
+        self.refuse_unsolved([out[8]], [creep])
         p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
         unit = coupled_states.LOAD / np.trapezoid(p, found.nodes)
-        return CoupledProfile(
-            nodes=found.nodes,
-            shift=0.5 * out[0] * out[1],  # half of lam times epsilon
-            p=p * unit,
-            q=q * unit,
-            status=int(out[8]),
-        )
+        shift = 0.5 * out[0] * out[1]  # half of lam times epsilon
+        return CoupledProfile(found.nodes, shift, p=p * unit, q=q * unit)
 
+    def refuse_unsolved(self, status: Any, creeps: Any) -> None:
+        """Raise ConvergenceError for the first state whose status is not 0; else do nothing.
 
-def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
-    """Raise ConvergenceError for the first state whose status is not 0; else do nothing.
-
-    status: status of the kernels for each state, (n,).
-    creeps: reduced creepages 2 kappa delta, (n,).
-    u, mu: kappa |V| and coefficient of friction of the states, for the message.
-    """
-    for code, creep in zip(np.asarray(status, int), creeps, strict=True):
-        if code:
-            problem = f"contact by method 'coupled': {_REASONS[int(code)]} at kappa |V| = {u:g} "
-            problem += f"(V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = {creep:g}"
-            raise ConvergenceError(f"{problem}; please report it")
+        status: status of the kernels for each state, (n,).
+        creeps: reduced creepages 2 kappa delta, (n,), for the message.
+        """
+        for code, creep in zip(np.asarray(status, int), creeps, strict=True):
+            if code:
+                raise ConvergenceError(
+                    f"contact by method 'coupled': {_REASONS[code]} at kappa |V| = "
+                    f"{self.u:g} (V in units of R/T_ref), mu = {self.mu:g}, 2 kappa delta = "
+                    f"{creep:g}; please report it"
+                )

@@ -21,20 +21,13 @@ from typing import Any
 
 import numpy as np
 
-from ..core import (
-    Floats,
-    ParameterError,
-    check_integer,
-    load_kept,
-    run_blocks,
-    save_kept,
-)
+from ..core import Floats, ParameterError, check_integer, load_kept, run_blocks, save_kept
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
 from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade
 from ..materials import lock_array, several_tables_error
 from .assumptions import DUNDURS_LIMIT
-from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth, refuse_unsolved
+from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, growth, pair_of_scene
 
 # --- Tables of the coupled solution ---
 
@@ -79,7 +72,7 @@ def coupled_law(
     Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.
     Raises ConvergenceError for a state that is not solved, and ParameterError for too few nodes.
     """
-    rows = tabulate(CoupledPair.of_scene(scene), scene.mu, nodes, progress)
+    rows = tabulate(pair_of_scene(scene), scene.mu, nodes, progress)
     return coupled_table(scene.alpha if scene.material is None else scene.material, rows)
 
 
@@ -90,17 +83,17 @@ def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
     count: number of nodes, >= 2; None: more the faster the compliance of the bodies grows.
     Returns ascending u, dimensionless, (n,); for elastic bodies three, whatever ``count`` is.
     """
-    times = np.array([time for body in pair.bodies for time in body.T])
+    times = np.array([time for body in pair for time in body.T])
     if not times.size:
         return _ELASTIC
     # about the shortest relaxation time: retardation time times instantaneous compliance
-    shortest = min(min(body.T) * (1.0 - math.fsum(body.J)) for body in pair.bodies if body.T)
+    shortest = min(min(body.T) * body.instant for body in pair if body.T)
     low = _SPEED_RANGE[0] / times.max()
     high = _SPEED_RANGE[1] / shortest
     if count is None:
         decades = math.log10(high / low)
         looked = np.geomspace(1.0 / high, 1.0 / low, math.ceil(_LOOKS * decades))
-        steepest = float(growth(pair.bodies, looked).max())
+        steepest = float(growth(pair, looked).max())
         count = math.ceil(decades * (_PER_DECADE[0] + _PER_DECADE[1] * steepest))
     return np.geomspace(low, high, count)
 
@@ -110,7 +103,7 @@ def tabulate(
 ) -> CoupledRows:
     """Solve the rows of a table, on threads, and measure its errors.
 
-    pair: :class:`CoupledPair`, the bodies.
+    pair: the bodies.
     mu: coefficient of friction, > 0.
     nodes, progress: as in :func:`coupled_law`; 4 to 1000 nodes of speed, 9 to 1001 of creepage.
     Returns :class:`CoupledRows` with ``errors``: rows for u = 0, each node of u, and u infinite.
@@ -122,31 +115,30 @@ def tabulate(
     if check_integer("nodes of creepage", across, 9, 1001) % 2 == 0:
         raise ParameterError("nodes of creepage", across, "odd, as they are symmetric about 0")
     u = speed_nodes(pair, count)
-    t = np.arange(-(across // 2), across // 2 + 1) / (across // 2)  # 0 exactly in the middle
+    half = across // 2
+    t = np.arange(-half, half + 1) / half  # 0 exactly in the middle
     speeds = np.concatenate([[0.0], u, [math.inf]])
     # reduced creepages of the middle, the negative and positive onset of full slip, free rolling
     edges = np.empty((speeds.size, 4))
     fields = np.empty((speeds.size, across, len(FIELDS)))
     # all rows of elastic bodies are equal: only the first is solved
-    work = range(1) if u is _ELASTIC else range(speeds.size)
-
-    rows: list[Any] = [None] * len(work)
+    solved = 1 if u is _ELASTIC else speeds.size
+    rows: list[Any] = [None] * solved
 
     def begin(n: int, _: int) -> None:
-        rows[n] = CoupledRow(pair, float(speeds[n]), mu)
-        edges[n, :3] = rows[n].touch(), *rows[n].onsets()
+        rows[n] = row = CoupledRow(pair, float(speeds[n]), mu)
+        edges[n, :3] = row.touch(), *row.onsets()
 
     def solve(n: int, _: int) -> None:
         edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
 
     # two passes: the states of a row need its middle creepage, which is smoothed over all rows
-    run_blocks(begin, len(work), 1, progress="coupled table: kernels" if progress else None)
-    edges[: len(work), 0] = _without_outliers(edges[: len(work), :3])
-    run_blocks(solve, len(work), 1, progress="coupled table: states" if progress else None)
-    edges[len(work) :] = edges[0]
-    fields[len(work) :] = fields[0]
-    arrays = {"u": u, "t": t, "edges": edges, "fields": fields}
-    made = CoupledRows(mu, **{name: lock_array(each) for name, each in arrays.items()})
+    run_blocks(begin, solved, 1, progress="coupled table: kernels" if progress else None)
+    edges[:solved, 0] = _without_outliers(edges[:solved, :3])
+    run_blocks(solve, solved, 1, progress="coupled table: states" if progress else None)
+    edges[solved:] = edges[0]
+    fields[solved:] = fields[0]
+    made = CoupledRows(mu, *map(lock_array, (u, t, edges, fields)))
     made.errors.update(measure_errors(made, pair))
     return made
 
@@ -185,15 +177,14 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
     slips there, else ``middle``.
     Raises ConvergenceError for a state that is not solved.
     """
-    mu = row.mu
     low, high = row.onsets()
     fields = _row_fields(row, middle, t)
     place = _free_place(t, fields[:, 0])
     free = middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
     if not 0.0 < row.u < math.inf:
-        state = _fields(row.states([free]), np.array([free]), row.u, mu)[0]
+        state = _fields(row, [free])[0]
         # kappa (Q delta - W_base - W_cylinder), from 2 kappa delta and works times 2 kappa
-        friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
+        friction = 0.5 * (row.mu * state[0] * free - state[6] - state[7])
         if friction <= _STICKS:
             # nothing slips there, and Q and M are 0 exactly: errors of the solution, up to 5e-5 of
             # mu P, are larger than all loads of a slow motion, which they would drive
@@ -205,7 +196,7 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
         else:
             # elastic bodies lose energy in slip alone: else the error of the spline would drive a
             # cylinder at rest, or keep it at rest; bodies that deform share the shift
-            sides = {body.side for body in row.pair.bodies}
+            sides = {body.side for body in row.pair}
             deforms = np.array([side in sides for side in ("base", "cylinder")])
             found = _spline(t, fields[:, 1:3] @ deforms, place)(place)
             shift = np.where(deforms, (friction - found) / deforms.sum(), 0.0)
@@ -222,19 +213,18 @@ def _row_fields(row: CoupledRow, middle: float, t: Floats) -> Floats:
     """
     low, high = row.onsets()
     creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
-    return _fields(row.states(creeps, t), creeps, row.u, row.mu)
+    return _fields(row, creeps, t)
 
 
-def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:
-    """Return the fields of states as one array.
+def _fields(row: CoupledRow, creeps: Any, at: Any = None) -> Floats:
+    """Return the fields of states of a row as one array.
 
-    states: the states, n of them.
-    creeps: reduced creepages 2 kappa delta, (n,), for the message.
-    u, mu: kappa |V| and coefficient of friction of all states, for the message.
+    row, creeps, at: as in :meth:`.CoupledRow.states`, n states.
     Returns (n, 8), columns in the order of :data:`FIELDS`, dimensionless.
     Raises ConvergenceError for the first state that is not solved.
     """
-    refuse_unsolved(states.status, creeps, u, mu)
+    states = row.states(creeps, at)
+    row.refuse_unsolved(states.status, creeps)
     return np.stack(states[: len(FIELDS)], axis=-1)
 
 
@@ -299,7 +289,7 @@ def measure_errors(
         # three within 2.5 % of the distance of the onsets, where the two splines meet
         near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
         creeps = np.concatenate([near, low + (high - low) * draw[3:]])
-        exact = _fields(row.states(creeps), creeps, u, rows.mu)
+        exact = _fields(row, creeps)
         found = look_up(rows.vector, np.full(creeps.size, u), creeps)
         worst[n] = np.abs(found - exact).max(axis=0)
 
@@ -316,19 +306,20 @@ _ARRAYS = "u", "t", "edges", "fields"
 _lock = threading.Lock()
 
 
-def is_coupled(pair: CoupledPair) -> bool:
-    """Return whether shear acts on pressure so much that a pair needs the coupled solution.
+def is_coupled(scene: Any) -> bool:
+    """Return whether shear acts on pressure so much that a scene needs the coupled solution.
 
-    pair: the bodies.
+    scene: :class:`.parameters.Parameters` of one material.
     Returns True where one is a layer, or where Dundurs' constant of half-spaces exceeds 0.05 in
     modulus, at long times or at once.
     """
-    if any(math.isfinite(body.thickness) for body in pair.bodies):
+    pair = pair_of_scene(scene)
+    if any(math.isfinite(body.thickness) for body in pair):
         return True
-    shares = [body.share for body in pair.bodies]
-    at_once = [body.share * body.instant for body in pair.bodies]
+    shares = [body.share for body in pair]
+    at_once = [body.share * body.instant for body in pair]
     for parts in (shares, at_once):
-        coupling = (part * body.sign * body.local for part, body in zip(parts, pair.bodies))
+        coupling = (part * body.sign * body.local for part, body in zip(parts, pair))
         if abs(math.fsum(coupling)) > DUNDURS_LIMIT * math.fsum(parts):
             return True
     return False
@@ -346,44 +337,42 @@ def refuse_several_tables(scene: Any) -> None:
         raise several_tables_error(name, "one value")
 
 
-def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
-    """Return the table of a pair at one mu: that of this process, else that of the cache folder,
-    else a new one, which both then keep.
+def stored_law(scene: Any) -> LawTable:
+    """Return the law of a scene by the table of its bodies at its mu: that of this process, else
+    that of the cache folder, else a new one, which both then keep.
 
-    pair: the bodies.
-    mu: coefficient of friction, > 0.
+    scene: :class:`.parameters.Parameters` of one material.
     A process that a user started shows a progress bar after one second where standard error is a
     terminal, unless $VISCOROLL_QUIET is 1.
-    Raises ConvergenceError for a state that is not solved.
+    Raises ParameterError where there would be a table for each of several bodies or mu;
+    ConvergenceError for a state that is not solved.
     """
+    refuse_several_tables(scene)
     with _lock:
-        return _rows(pair, mu)
+        rows = _stored_rows(pair_of_scene(scene), float(np.ravel(scene.mu)[0]))
+    return coupled_table(scene.material, rows)
 
 
 @lru_cache(maxsize=32)
-def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
+def _stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
     """Return the table of a pair at one mu, from its file, else solved and stored.
 
-    The file is named by a hash of the sources, the bodies and mu; a damaged one is replaced with a
-    warning.  Arguments and errors as in :func:`stored_rows`.
+    The file is named by a hash of the sources on which the bits of a table depend, the bodies and
+    mu; a damaged one is replaced with a warning.
+    pair: the bodies.
+    mu: coefficient of friction, > 0.
+    Raises ConvergenceError for a state that is not solved.
     """
-    key = hashlib.sha256(f"{_digest()} {pair!r} {mu!r}".encode()).hexdigest()[:20]
-    path = cache_root() / "coupled" / f"{key}.npz"
+    digest = hashlib.sha256(f"{sources_digest()} {pair!r} {mu!r}".encode())
+    for source in sorted(Path(__file__).parent.glob("coupled*.py")):
+        digest.update(source.read_bytes())
+    path = cache_root() / "coupled" / f"{digest.hexdigest()[:20]}.npz"
     damaged = "the cached table of the coupled solution is damaged ({}) and is made again"
     if (found := load_kept(path, damaged, _read)) is None:
         found = tabulate(pair, mu, progress=not is_quiet() and sys.stderr.isatty())
         arrays = {name: getattr(found, name) for name in ("mu", *_ARRAYS)}
-        save_kept(path, _KEPT, arrays | {"errors": [found.errors[name] for name in FIELDS]})
+        save_kept(path, _KEPT, arrays | {"errors": list(found.errors.values())})
     return found
-
-
-@lru_cache(maxsize=1)
-def _digest() -> str:
-    """Return a digest of the sources on which the bits of a table depend."""
-    digest = hashlib.sha256(sources_digest().encode())
-    for path in sorted(Path(__file__).parent.glob("coupled*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def _read(data: Any) -> CoupledRows:

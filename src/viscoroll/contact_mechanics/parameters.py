@@ -29,7 +29,7 @@ from ..core import (
     shape_error,
     slope_tan_cos,
 )
-from ..laws import LawGrid, LawTable, coupled_table
+from ..laws import LawGrid, LawTable
 from ..laws.law_table import law_table
 from ..materials import HIGHEST_ALPHA, Bodies, Cover, Prony
 
@@ -60,6 +60,8 @@ class Roller:
 
     scale: Scale
     material: Any
+    #: names of the parameters that are numbers
+    _names: tuple[str, ...]
     #: data of the bodies for assessments, a :class:`.body_data.BodyData`; None of a scene
     body_data: Any = None
     about: ClassVar[dict[str, Any]] = {}
@@ -70,8 +72,9 @@ class Roller:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Parameters that are numbers or arrays, by name."""
-        raise NotImplementedError
+        """Parameters that were given as numbers or arrays, by name, in the units of the roller."""
+        values = {name: getattr(self, name) for name in self._names}
+        return {name: value for name, value in values.items() if value is not None}
 
     def on_slope(self, slope: Any) -> Self:
         """Return the same roller on a slope, rad, under the load P cos(slope), as a new object."""
@@ -130,7 +133,7 @@ class Roller:
         )
 
     def __eq__(self, other: object) -> bool:
-        same_type = isinstance(other, Roller) and type(other) is type(self)
+        same_type = type(other) is type(self)
         return self._key() == other._key() if same_type else NotImplemented  # type: ignore[attr-defined]
 
     def __hash__(self) -> int:
@@ -166,7 +169,7 @@ class Parameters(Roller):
     _law: ClassVar[LawTable | None] = None
     #: the law as it was given: that of a grid is made for one kappa
     _given_law: ClassVar[LawGrid | LawTable | None] = None
-    _made: ClassVar[LawTable | None] = None
+    _names = PARAMETERS
     shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
 
@@ -211,13 +214,12 @@ class Parameters(Roller):
             if name != "gamma" or value is not None:
                 arrays[name], extents[name] = check_array_extent(name, value, above=0.0)
         shape = broadcast_shape(**arrays)
-        if arrays["mu"].size and arrays["kappa"].size:
-            low, high = RATIO_RANGE
-            least_mu, most_mu = extents["mu"]
-            least_kappa, most_kappa = extents["kappa"]
-            # bounds of all ratios first: arrays of many are divided only if these do not suffice
-            if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
-                _refuse_ratio(arrays["mu"], arrays["kappa"])
+        low, high = RATIO_RANGE
+        least_mu, most_mu = extents["mu"]
+        least_kappa, most_kappa = extents["kappa"]
+        # bounds of all ratios first: arrays of many are divided only if these do not suffice
+        if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
+            _refuse_ratio(arrays["mu"], arrays["kappa"])
         # by ``vars``, as the class is frozen
         numbers = {name: read_only(array) for name, array in arrays.items()}
         vars(self).update(numbers, shape=shape, material=material)
@@ -240,14 +242,6 @@ class Parameters(Roller):
         if type(self.alpha) is float:
             return law_table(self.alpha)
         return law_table(self.alpha.item()) if self.alpha.size == 1 else None
-
-    @property
-    def numbers(self) -> dict[str, Any]:
-        """alpha (also that of a material), kappa, mu, gamma and j by name; gamma is missing where
-        it was not given.
-        """
-        values = {name: getattr(self, name) for name in PARAMETERS}
-        return {name: value for name, value in values.items() if value is not None}
 
     def scene(self) -> Self:
         """Return the scene itself, so that functions may call it for a scene as for a cylinder.
@@ -292,12 +286,12 @@ class Parameters(Roller):
         >>> vr.presets.RUBBER_ROLLER.replace(alpha=11.0, mu=0.4).alpha
         11.0
         """
-        material: dict[str, Any] = {}
+        given = self._given_law or self.material
         if changes.keys() & {"alpha", "material"}:
-            material = {"alpha": None, "material": None}
-        elif self._given_law is not None or self.material is not None:
-            material = {"alpha": None, "material": self._given_law or self.material}
-        return replace(self, **(material | changes))
+            changes = {"alpha": None, "material": None} | changes
+        elif given is not None:
+            changes = {"alpha": None, "material": given} | changes
+        return replace(self, **changes)
 
     @property
     def series(self) -> Prony | None:
@@ -363,14 +357,13 @@ class Parameters(Roller):
             return self._law.coupled is not None
         if self.coupled is False or not isinstance(self.material, Bodies):
             return False
-        from .coupled_pair import CoupledPair
         from .coupled_tables import is_coupled
 
-        if not self.material.shape:
-            return is_coupled(CoupledPair.of_scene(self))
-        # a slice: an array of no materials has no first one
-        firsts = [self.replace(material=one) for one in self.material[:1]]
-        return any(map(is_coupled, map(CoupledPair.of_scene, firsts)))
+        firsts = [self]
+        if self.material.shape:
+            # a slice: an array of no materials has no first one
+            firsts = [self.replace(material=one) for one in self.material[:1]]
+        return any(map(is_coupled, firsts))
 
     @property
     def rolling_law(self) -> LawTable | None:
@@ -380,16 +373,14 @@ class Parameters(Roller):
         Raises ParameterError where there would be a table for each of several bodies or mu, and as
         :attr:`table`.
         """
-        if not self.tabulated or self._law is not None:
-            return self.table
-        from .coupled_pair import CoupledPair
-        from .coupled_tables import refuse_several_tables, stored_rows
+        return self._made if self.tabulated and self._law is None else self.table
 
-        refuse_several_tables(self)
-        if self._made is None:
-            rows = stored_rows(CoupledPair.of_scene(self), float(np.ravel(self.mu)[0]))
-            vars(self)["_made"] = coupled_table(self.material, rows)
-        return self._made
+    @cached_property
+    def _made(self) -> LawTable:
+        """The table of the coupled solution of :attr:`rolling_law`; errors as there."""
+        from .coupled_tables import stored_law
+
+        return stored_law(self)
 
     @property
     def gridded(self) -> bool:
@@ -401,9 +392,7 @@ class Parameters(Roller):
         """The scene by the law of its bodies without a table; the scene itself where that is its
         law, or where a grid was given.
         """
-        if not self.tabulated or self.gridded:
-            return self
-        return self.replace(coupled=False)
+        return self.replace(coupled=False) if self.tabulated and not self.gridded else self
 
     @property
     def like_bodies(self) -> bool:
@@ -439,24 +428,22 @@ class Parameters(Roller):
         True
         """
         cosine = slope_tan_cos(slope)[1]
-        sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})
-        broadcast_shape(slope=cosine, **sizes)
+        thickness = getattr(self.cover, "thickness", None)
+        broadcast_shape(slope=cosine, **self.numbers, thickness=thickness)
         changes = {
             "kappa": self.kappa / np.sqrt(cosine),
             "gamma": None if self.gamma is None else self.gamma * cosine,
         }
         if self.cover is not None:  # its thickness is divided by the l0 of that load
-            changes["material"] = self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))
+            changes["material"] = self.cover.of_thickness(thickness / np.sqrt(cosine))
         return self.replace(**changes)
 
     @property
     def _arrays(self) -> dict[str, Any]:
         """The parameters by name, as they were given: the material in place of its alpha."""
-        if self.material is None:
-            return self.numbers
-        return {"material": self.material} | {
-            name: x for name, x in self.numbers.items() if name != "alpha"
-        }
+        given = {"material": self.material} | self.numbers
+        del given["material" if self.material is None else "alpha"]
+        return given
 
     def __repr__(self) -> str:
         return f"Scene({', '.join(f'{name}={format_value(value)}' for name, value in self._arrays.items())})"  # noqa: E501

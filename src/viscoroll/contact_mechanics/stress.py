@@ -30,9 +30,9 @@ from ..core import (
     strip_labels,
 )
 from ..laws import CoverModes, half_line_rule, pressure, series_record
-from ..materials import layer_excess, local_coupling, total_series
-from .contact_table import ACCURACY, DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
-from .coupled_pair import CoupledPair, CoupledRow, refuse_unsolved, wave_compliance
+from ..materials import Cover, layer_excess, total_series
+from .contact_table import complete, computed_fields, evaluate_contact, refuse_overflow
+from .coupled_pair import CoupledRow, pair_of_scene, wave_compliance
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
@@ -45,69 +45,44 @@ _GAUSS = 5
 _WAVES = -25.0, 80.0, 0.12
 
 
-@lru_cache(maxsize=16)
-def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
-    """Return the states of a pair at one speed, which are kept for later calls.
+#: States of a pair at one speed, which are kept for later calls.
+_coupled_row = lru_cache(maxsize=16)(CoupledRow)
 
-    pair: both bodies.
-    u: kappa |V|, dimensionless, >= 0 or infinite.
-    mu: coefficient of friction, > 0.
-    Returns the :class:`.coupled_pair.CoupledRow`.
-    Raises ConvergenceError where full slip has no solution.
+
+def _broadcast_states(
+    scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool
+) -> tuple[tuple[int, ...], Floats]:
+    """Broadcast and check the states of a call.
+
+    scene: dimensionless parameters, of which kappa and mu, numbers or arrays, are read.
+    V: speeds, dimensionless, any sign.
+    creep: omega if ``creep_is_omega``, else the creepage delta.
+    Returns (the shape to which they broadcast, of n elements; the states, (8, n), dimensionless:
+    u = kappa |V|, mu, kappa, V, the sign of V, 1.0 of 0, the slip omega - V, the creepage delta,
+    infinite for omega other than 0 at V = 0, and the reduced creepage 2 kappa delta).
+    Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
     """
-    row = CoupledRow(pair, u, mu)
-    refuse_unsolved(row.full_slip_status, np.array([-np.inf, np.inf]), u, mu)
-    return row
-
-
-class _States:
-    """States of a call as vectors (n,), dimensionless, and which of them have kappa |V| and mu, a
-    row, in common.
-
-    shape : shape to which the arguments broadcast, of n elements.
-    kappa, mu, V : as in the scene, with V of any sign; sign : that of V, 1.0 of 0.
-    slip, delta : omega - V, and the creepage; infinite for omega other than 0 at V = 0.
-    u, creep : kappa |V|, and 2 kappa delta.
-    groups : indices of the states of each row, a list of arrays.
-    """
-
-    def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
-        """Broadcast and check the states.
-
-        scene: dimensionless parameters, of which kappa and mu, numbers or arrays, are read.
-        V: speeds, dimensionless, any sign.
-        creep: omega if ``creep_is_omega``, else the creepage delta.
-        Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
-        """
-        arrays = {
-            "kappa": scene.kappa,
-            "mu": scene.mu,
-            "V": V,
-            "omega" if creep_is_omega else "delta": creep,
-        }
-        arrays = {name: np.asarray(value, float) for name, value in arrays.items()}
-        self.shape = broadcast_shape(**arrays)
-        refuse_overflow(arrays["kappa"], arrays["V"])
-        self.kappa, self.mu, self.V, given = (
-            np.broadcast_to(each, self.shape).ravel() for each in arrays.values()
-        )
-        self.sign = np.where(self.V < 0.0, -1.0, 1.0)
-        if creep_is_omega:
-            self.slip = given - self.V
-            # at V = 0 infinite, with the sign of the slip, and 0/0 without slip, which is 0
-            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                delta = self.slip / np.abs(self.V) * self.sign
-                self.delta = np.where(self.slip == 0.0, 0.0, delta)
-        else:
-            self.slip = given * self.V
-            self.delta = given
-        self.u = self.kappa * np.abs(self.V)
-        with np.errstate(over="ignore"):
-            self.creep = 2.0 * self.kappa * self.delta
-        # states of one speed and friction share the onsets of full slip, which are solved once
-        _, row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
-        row = row.ravel()
-        self.groups = [np.flatnonzero(row == n) for n in range(int(row.max(initial=-1)) + 1)]
+    arrays = {
+        "kappa": scene.kappa,
+        "mu": scene.mu,
+        "V": V,
+        "omega" if creep_is_omega else "delta": creep,
+    }
+    shape = broadcast_shape(**arrays)
+    refuse_overflow(scene.kappa, V)
+    kappa, mu, V, given = (np.broadcast_to(each, shape).ravel() for each in arrays.values())
+    sign = np.where(V < 0.0, -1.0, 1.0)
+    if creep_is_omega:
+        slip = given - V
+        # at V = 0 infinite, with the sign of the slip, and 0/0 without slip, which is 0
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            delta = np.where(slip == 0.0, 0.0, slip / np.abs(V) * sign)
+    else:
+        slip = given * V
+        delta = given
+    with np.errstate(over="ignore"):
+        reduced = 2.0 * kappa * delta
+    return shape, np.array([kappa * np.abs(V), mu, kappa, V, sign, slip, delta, reduced])
 
 
 def evaluate_coupled(
@@ -121,56 +96,47 @@ def evaluate_coupled(
     Raises ParameterError for several materials, kappa |V| above 1e300, and the depth of a
     half-space; ConvergenceError where a state has no solution.
     """
-    pair = CoupledPair.of_scene(scene)
-    if DEPTH in names and any(math.isinf(body.thickness) for body in pair.bodies):
+    pair = pair_of_scene(scene)
+    if "depth" in names and any(math.isinf(body.thickness) for body in pair):
         allowed = "left out: in plane strain the approach of a half-space is infinite"
-        raise ParameterError("fields", repr(DEPTH), allowed)
-    states = _States(scene, V, creep, creep_is_omega)
-    groups = states.groups
-    computed = tuple(dict.fromkeys(names))
-    out = np.empty((len(computed), states.V.size))
+        raise ParameterError("fields", "'depth'", allowed)
+    shape, states = _broadcast_states(scene, V, creep, creep_is_omega)
+    # states of one kappa |V| and mu share the onsets of full slip, which are solved once
+    rows, row_of_state = np.unique(states[:2], axis=1, return_inverse=True)
+    computed = computed_fields(names, unlike=True)
+    out = np.empty((len(computed), states.shape[1]))
 
-    def work(row: int, _: int) -> None:
-        """Compute the states of a row and write them into their columns of ``out``."""
-        fields = _fields_of_row(pair, states, groups[row], computed)
-        for n, name in enumerate(computed):
-            out[n, groups[row]] = fields[name]
+    def work(n: int, _: int) -> None:
+        """Compute the states of the n-th row and write them into their columns of ``out``."""
+        which = row_of_state.ravel() == n
+        row = _coupled_row(pair, *rows[:, n].tolist())
+        fields = _fields_of_row(row, states[:, which], computed)
+        for place, name in zip(out, computed):
+            place[which] = fields[name]
 
-    run_blocks(work, len(groups), 1)
-    return complete(names, computed, out, states.shape)
+    run_blocks(work, rows.shape[1], 1)
+    return complete(names, computed, out, shape)
 
 
-def _fields_of_row(
-    pair: CoupledPair, states: _States, which: Any, names: tuple[str, ...]
-) -> dict[str, Any]:
+def _fields_of_row(row: CoupledRow, states: Floats, names: tuple[str, ...]) -> dict[str, Any]:
     """Return the fields of states that have kappa |V| and mu in common.
 
-    pair: the bodies.
-    states: all states of the call.
-    which: indices of the states of this row, (n,), n >= 1.
+    row: the :class:`.coupled_pair.CoupledRow` of these.
+    states: these states, (8, n), as of :func:`_broadcast_states`.
     names: requested fields; depth and delta_0, which take longer, are computed only if requested.
     Returns name -> values, (n,) or one number for all, dimensionless.
     Raises ConvergenceError where a state has no solution.
     """
-    first = which[0]
-    row = coupled_row(pair, float(states.u[first]), float(states.mu[first]))
-    kappa, mu, V, sign, slip, delta, creep = (
-        vars(states)[name][which] for name in ("kappa", "mu", "V", "sign", "slip", "delta", "creep")
-    )
+    _, mu, kappa, V, sign, slip, delta, creep = states
     found = row.states(creep, apart=True)
-    refuse_unsolved(found.status, creep, row.u, row.mu)
+    row.refuse_unsolved(found.status, creep)
     # V over 2 kappa, as works are times 2 kappa; moments are times kappa
     half = 0.5 * np.abs(V) / kappa
     strain = found.work_base + found.work_cylinder
     low, high = row.onsets()
     with np.errstate(divide="ignore", over="ignore"):
-        zeta = 0.5 * found.lam / row.u if row.u > 0.0 else np.inf
-    fields = {
-        "lam": found.lam,
-        "length": found.lam,
-        ACCURACY: found.lam,
-        "epsilon": found.epsilon,
-        "beta": found.beta,
+        zeta = 0.5 * found.lam / row.u
+    fields = found._asdict() | {
         "zeta": zeta,
         "delta": delta,
         "delta_minus": 0.5 * low / kappa,
@@ -185,39 +151,37 @@ def _fields_of_row(
         "loss_half_space": half * (2.0 * found.kM_base + found.work_base),
         "loss_cylinder": half * (2.0 * found.kM_cylinder + found.work_cylinder),
     }
-    fields["M"] = fields["C_rr"] = fields["M_half_space"] + fields["M_cylinder"]
-    if FREE_CREEP in names:
-        fields[FREE_CREEP] = 0.5 * row.free_creep() / kappa
-    if DEPTH in names:
-        depths = [depth(pair.bodies, row.u, row.profile(each)) for each in creep.tolist()]
-        fields[DEPTH] = np.array(depths) / kappa
+    fields["M"] = fields["M_half_space"] + fields["M_cylinder"]
+    if "delta_0" in names:
+        fields["delta_0"] = 0.5 * row.free_creep() / kappa
+    if "depth" in names:
+        fields["depth"] = np.array([depth(row, each) for each in creep.tolist()]) / kappa
     return fields
 
 
-def depth(bodies: Any, u: float, profile: Any) -> float:
-    """Return the approach of two bodies, each rigid or a layer on a rigid body.
+def depth(row: CoupledRow, creep: float) -> float:
+    """Return the approach of two bodies in one state, each rigid or a layer on a rigid body.
 
     It is the mean, weighted by the pressure, of the displacement of both surfaces (by Parseval's
     theorem) plus that of the cylinder's profile x^2/2.
 
-    bodies: a :class:`CoupledBody` for each body that deforms, of finite thickness.
-    u: kappa |V|, dimensionless, >= 0 or infinite.
-    profile: :class:`CoupledProfile`, tractions of the state, of which nodes, shift, p and q are
-        read; x is counted from the axis, nodes + shift.
+    row: the row of the state, each of whose bodies has a finite thickness.
+    creep: its reduced creepage 2 kappa delta.
     Returns the approach divided by l0^2/R, a float, positive where the bodies have come closer than
     at their first touch.
     """
-    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    profile = row.profile(creep)
+    half = 0.5 * np.ptp(profile.nodes)
     k, weights = half_line_rule(_WAVES[2], 1.0 / half, _WAVES[:2])
-    p = transforms(profile.nodes, profile.p, k)
-    q = transforms(profile.nodes, profile.q, k)
+    p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
     total = 0.0
-    for body in bodies:
-        instant, modes = body.at_speed(u)
-        compliance = wave_compliance(instant, modes, k)
-        L, _, C = layer_transforms(body.nu, k * body.thickness)
-        work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
+    for body in row.pair:
+        compliance = wave_compliance(body, row.u, k)
+        L, _, C = layer_excess(body.nu, k * body.thickness)
+        coupling = 1j * body.sign * (body.local + C) * q * np.conj(p)
+        work = compliance / k * ((1.0 + L) * np.abs(p) ** 2 + coupling)
         total += body.share * float(weights @ work.real) / np.pi
+    # x is counted from the axis
     x, weights = _element_points(profile.nodes)
     pressure = np.interp(x, profile.nodes, profile.p) * weights
     square = pressure @ (x + profile.shift) ** 2
@@ -245,17 +209,6 @@ def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
     return np.exp(-1j * np.multiply.outer(k, x)) @ (np.interp(x, nodes, values) * weights)
 
 
-def layer_transforms(nu: float, u: Floats) -> Floats:
-    """Return the transforms L, T and C (:mod:`.coupled_pair`) of a bonded layer.
-
-    nu: Poisson's ratio.
-    u: wave numbers times the thickness, > 0, (n,).
-    Returns L and T divided by those of a half-space, and C, dimensionless, (3, n).
-    """
-    L, shear, C = layer_excess(nu, u)
-    return np.array([1.0 + L, 1.0 + L + shear, local_coupling(nu) + C])
-
-
 def coupled_stress(
     scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
 ) -> Floats:
@@ -267,29 +220,28 @@ def coupled_stress(
     contact.
     Raises as :func:`evaluate_coupled`.
     """
-    pair = CoupledPair.of_scene(scene)
-    states = _States(scene, V, creep, creep_is_omega)
-    shape = broadcast_shape(x=x, V=np.empty(states.shape))
-    number = np.broadcast_to(np.arange(states.V.size).reshape(states.shape), shape)
+    pair = pair_of_scene(scene)
+    shape_of_states, states = _broadcast_states(scene, V, creep, creep_is_omega)
+    number = np.arange(states.shape[1]).reshape(shape_of_states)
+    shape = broadcast_shape(x=x, V=number)
+    number = np.broadcast_to(number, shape)
     x = np.broadcast_to(x, shape)
     out = np.empty((2, *shape))
-    for n in range(states.V.size):
-        row = coupled_row(pair, float(states.u[n]), float(states.mu[n]))
-        found = row.profile(float(states.creep[n]))
-        refuse_unsolved([found.status], [states.creep[n]], row.u, row.mu)
+    for n, (u, mu, kappa, _, sign, *_, reduced) in enumerate(states.T.tolist()):
+        found = _coupled_row(pair, u, mu).profile(reduced)
         place = number == n
-        sign = states.sign[n]
         # from the middle of the contact, of a motion along +x; for V < 0 all is mirrored
         y = sign * x[place] - found.shift
         # tractions are over E'/(4 pi kappa)
-        both = [np.interp(y, found.nodes, each, left=0.0, right=0.0) for each in (found.p, found.q)]
-        out[:, place] = np.array(both) / (4.0 * np.pi * states.kappa[n])
+        both = [np.interp(y, found.nodes, each) for each in (found.p, found.q)]
+        out[:, place] = np.array(both) / (4.0 * np.pi * kappa)
         out[1, place] *= sign
     return out
 
 
 # --- Pressure and shear stress along the contact ---
 
+Method = Literal["table", "coupled"]
 #: Points of a block: some milliseconds of work.
 _BLOCK = 1 << 15
 
@@ -301,7 +253,7 @@ def stress(
     V: Numbers,
     *,
     delta: Numbers,
-    method: Literal["table", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values: ...
 @overload
 def stress(
@@ -310,7 +262,7 @@ def stress(
     V: Numbers,
     *,
     omega: Numbers,
-    method: Literal["table", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values: ...
 def stress(
     roller: Roller,
@@ -319,7 +271,7 @@ def stress(
     *,
     delta: Numbers | None = None,
     omega: Numbers | None = None,
-    method: Literal["table", "coupled"] = "table",
+    method: Method = "table",
 ) -> Values:
     """Compute pressure and shear stress along the contact of a rolling cylinder and its base, Eqs.
     (11)-(14).
@@ -399,8 +351,7 @@ def stress(
             speed = divide_by_unit("V", speed, scale["V"])
             creep = divide_by_unit(creep_name, creep, scale[creep_name])
     find = coupled_stress if method == "coupled" else _stress_of_law
-    by_omega = creep_name == "omega"
-    stresses = find(scene, x=position, V=speed, creep=creep, creep_is_omega=by_omega)
+    stresses = find(scene, position, speed, creep, delta is None)
     stresses *= scale["p"]  # in place: a copy would double the memory of a large call
     found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
     place = "place along the contact, from the point below the axis" + ", divided by l0" * (
@@ -422,24 +373,17 @@ def _stress_of_law(
     Returns p and tau divided by E', rows of an array, each of the broadcast shape; p alone of a
     cover and of half-spaces whose states are those of the coupled solution.
     """
-    from ..kernels.law.modes import Points
+    from ..kernels.law.modes import Points, new_memory_weights, stress_loop
 
     rows = 1 if scene.tabulated or scene.cover is not None else 2
     scene = scene.uncoupled
-    lam, epsilon, beta, zeta, delta = evaluate_contact(
-        scene,
-        V,
-        creep=creep,
-        creep_is_omega=creep_is_omega,
-        names=("lam", "epsilon", "beta", "zeta", "delta"),
-    ).values()
+    names = "lam", "epsilon", "beta", "zeta", "delta"
+    found = evaluate_contact(scene, V, creep, creep_is_omega, names)
+    lam, epsilon, beta, zeta, delta = found.values()
     # For V < 0 positions are mirrored, and tau changes its sign.
     mirror = np.where(V < 0.0, -1.0, 1.0)
-    alpha = (
-        scene.alpha
-        if scene.material_array is None
-        else np.arange(len(scene.material_array), dtype=float)
-    )
+    many = scene.material_array
+    alpha = scene.alpha if many is None else np.arange(len(many), dtype=float)
     # first the fields of Points in their order; an array of materials has their indices for alpha
     state = (scene.kappa, scene.mu, lam, epsilon, beta, zeta, alpha)
     arrays = [np.asarray(value, float) for value in (x, *state, mirror, np.sign(delta) * mirror)]
@@ -453,14 +397,32 @@ def _stress_of_law(
     def work(start: int, stop: int) -> None:
         """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1 of the flattened
         broadcast shape, and write them into these elements of ``p`` and ``tau``; of a cover p
-        alone.
+        alone.  Consecutive points of one material are computed together.
         """
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
-        points = Points(mirrored, *(read(start, stop) for read in readers))
-        _compute_stresses(
-            scene, read_alpha(start, stop), points=points, p=p[start:stop], tau=tau[start:stop]
-        )
+        points: Any = Points(mirrored, *(read(start, stop) for read in readers))
+        alphas = read_alpha(start, stop)
+        material: Any = scene.material
+        ends: Any = [] if many is None else 1 + np.flatnonzero(np.diff(alphas))
+        for first, last in pairwise([0, *ends, stop - start]):
+            part = points._make(each[first:last] if each.size > 1 else each for each in points)
+            here = slice(start + first, start + last)
+            if many is not None:
+                material = many[int(alphas[min(first, alphas.size - 1)])]
+            if isinstance(material, Cover):
+                p[here] = _cover_pressure(material, part)
+                continue
+            series, own = series_record(alphas if material is None else total_series(material))
+            stress_loop(
+                series,
+                own,
+                new_memory_weights(series),
+                new_memory_weights(series),
+                part,
+                p[here],
+                tau[here],
+            )
         if scene.cover is None:  # else tau is not computed
             # + 0: outside the contact 0, not -0
             tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
@@ -469,56 +431,16 @@ def _stress_of_law(
     return out.reshape(2, *shape)[:rows]
 
 
-def _compute_stresses(
-    scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats
-) -> None:
-    """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
-
-    scene: dimensionless parameters of the roller, of which the material alone is read.
-    alpha: alphas, or for an array of materials their indices as floats, (n,) or (1,); for one
-        material not used.  Consecutive points of one material are computed together.
-    points: record :class:`.modes.Points`; its fields (position, kappa, mu, lam,
-        epsilon, beta, zeta) are (n,) or (1,), dimensionless, positions in the frame where V > 0,
-        divided by l0.
-    p, tau: pressure and size of the shear stress divided by E', (n,), written, 0 outside the
-        contact; of a cover tau is not written.
-    """
-    from ..kernels.law.modes import new_memory_weights, stress_loop
-
-    ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
-    for first, last in pairwise([0, *ends, p.size]):
-        part = points._make(each[first:last] if each.size > 1 else each for each in points)
-        index = int(alpha[min(first, alpha.size - 1)])  # of one of many materials
-        if scene.cover is not None:
-            p[first:last] = _cover_pressure(scene, index, part)
-            continue
-        material: Any = alpha if scene.series is None else scene.series
-        if scene.material_array is not None:
-            material = total_series(scene.material_array[index])
-        series, alphas = series_record(material)
-        stress_loop(
-            series,
-            alphas,
-            new_memory_weights(series),
-            new_memory_weights(series),
-            part,
-            p[first:last],
-            tau[first:last],
-        )
-
-
-def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
+def _cover_pressure(cover: Cover, points: Any) -> Floats:
     """Return p/E' at points on a cover, by one solve of the contact of the layer for each different
     state.
 
-    scene: dimensionless parameters of a roller with a cover.
-    index: index of the cover, if the scene has an array of covers; else not used.
+    cover: one :class:`.bodies.Cover`.
     points: record :class:`.modes.Points`, of which position (divided by l0, in the
         frame where V > 0), kappa, lam, epsilon and zeta (infinite at V = 0) are used, (n,) or (1,).
     Returns p/E', dimensionless, >= 0 to rounding, 0 outside the contact, a new array (n,), where n
     is the common length of these fields.
     """
-    cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = CoverModes(cover)
     x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
     states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import __version__
-from ..contact_mechanics import Contacts, CoupledPair, measure_errors
+from ..contact_mechanics import Contacts, measure_errors, pair_of_scene
 from ..core import (
     Dataset,
     FileError,
@@ -207,7 +207,7 @@ def measured_errors(
         A cover whose solve at one of the speeds finds no contact length that carries the load.
     """
     if isinstance(table, LawTable) and table.coupled is not None:
-        pair = CoupledPair.of_scene(Scene(material=table, kappa=1.0, mu=table.coupled.mu))
+        pair = pair_of_scene(Scene(material=table, kappa=1.0, mu=table.coupled.mu))
         return measure_errors(table.coupled, pair, count or COUPLED_POINTS, seed)
     random = np.random.default_rng(seed)
     if isinstance(table, law_table.LawAxis):
