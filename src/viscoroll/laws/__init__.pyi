@@ -7,8 +7,8 @@ from .cover_solve import layer_nodes as layer_nodes
 from .cover_solve import pressure as pressure
 from .law_grid import LawGrid as LawGrid
 from .law_grid import check_nodes as check_nodes
-from .law_grid import fit_spline as fit_spline
 from .law_grid import friction_limit as friction_limit
+from .law_grid import increases as increases
 from .law_grid import pack_spline as pack_spline
 from .law_grid import refuse_filled as refuse_filled
 from .law_netcdf import bodies_as_toml as bodies_as_toml
@@ -22,8 +22,10 @@ from .law_rows import Rows as Rows
 from .law_rows import evaluate_by_modes as evaluate_by_modes
 from .law_rows import grade as grade
 from .law_rows import series_record as series_record
+from .law_table import LawAxis as LawAxis
 from .law_table import LawTable as LawTable
 from .law_table import coupled_table as coupled_table
+from .law_table import law_axis as law_axis
 from .laws_per_element import count_laws as count_laws
 from .laws_per_element import record_of_alphas as record_of_alphas
 from .laws_per_element import record_of_materials as record_of_materials

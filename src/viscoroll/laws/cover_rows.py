@@ -50,7 +50,6 @@ from .cover_solve import (
     LEAST_TERMS,
     CoverModes,
     CoverState,
-    LocalPressure,
     decays,
     layer_operator,
     local_pressure,
@@ -94,8 +93,17 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     state: :class:`CoverState` of that length.
     Returns :class:`Shear`.
     """
-    local = local_pressure(modes, z, state) if any(body.local for body in modes.bodies) else None
-    s, excess = _sources(modes, z, state, local)
+    s, excess = _sources(modes, state)
+    # minus the mean of C p, with the square of the transform, where the mean itself has that of its
+    # magnitude: it is the mirrored one
+    strain = modes.C * (state.own * state.transform**2).real / state.v
+    mirrored = -2.0 / state.q[0] * (modes.mine @ strain)
+    if any(body.local for body in modes.bodies):
+        terms, local_mirrored = local_pressure(modes, z, state)
+        # ahead of the edge there is no pressure, while the series goes on
+        s += terms[: len(s)]
+        excess -= decays(modes.series.b * z, _LOCAL_ORDERS).T @ terms[: _LOCAL_ORDERS + 1]
+        mirrored -= local_mirrored
     # L and T - L together: the layers' tangential displacement by shear
     S, c = layer_operator(state.A, state.memory, (modes.L + modes.shear) * state.part)
     Phi = 2.0 * state.exponentials.ratio[1:]
@@ -110,15 +118,9 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     # the change is one of pressure: normal displacements again, without T - L
     S, c = layer_operator(state.A, state.memory, modes.L * state.part)
     shift = _shift(modes, state, c @ change + excess.sum(axis=1)) + S[0] @ change + s[0].sum()
-    # H = z q_1, at the same z
+    # the load is H = z q_1, at the same z
     load = float(change[0] / state.q[0])
-    return Shear(
-        moments=_moments(modes, z, state),
-        free=free,
-        mirrored=_mirrored(modes, state, local),
-        load=load,
-        shift=float(shift),
-    )
+    return Shear(_moments(modes, z, state), free, mirrored, load, float(shift))
 
 
 def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
@@ -136,44 +138,18 @@ def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
     return modes.series.t @ (source - (edge * within.T).T)
 
 
-def _sources(
-    modes: CoverModes, z: float, state: CoverState, local: LocalPressure | None
-) -> tuple[Floats, Floats]:
-    """Return the strain C p of each body, divided by the compliance of both, as a source in the
-    equations of the contact: terms T_n(x), and excess memory of each creep mode.
+def _sources(modes: CoverModes, state: CoverState) -> tuple[Floats, Floats]:
+    """Return the strain C p of each body by long waves, divided by the compliance of both, as a
+    source in the equations of the contact: terms T_n(x), and excess memory of each creep mode.
 
-    modes, z, state: as in :func:`shear_of`; the state has N terms.
-    local: the pressure at points, for the coupling of short waves; None: there is none.
+    modes, state: as in :func:`shear_of`; the state has N terms.
     Returns (terms from n = 0, (N + 1, 2); excess memory, (modes, 2)).
     """
     A = state.A
     F = modes.mine * (modes.C * state.part * state.transform)
     s = 2.0 * np.where(np.arange(len(A))[:, None] % 2, -(A @ F.imag.T), A @ F.real.T)
     s[0] *= 0.5
-    excess = (state.memory @ F.T).real
-    if local is not None:
-        terms = local.terms[: _LOCAL_ORDERS + 1]
-        D = decays(modes.series.b * z, _LOCAL_ORDERS)
-        # ahead of the edge there is no pressure, while the series goes on
-        s = s + terms[: len(A)]
-        excess = excess - D.T @ terms
-    return s, excess
-
-
-def _mirrored(modes: CoverModes, state: CoverState, local: LocalPressure | None) -> Floats:
-    """Return the parts of each body in delta_0*, (2,), in units of V T_ref/R.
-
-    The part of a body is minus the mean of its C p, mirrored about the middle of the contact, with
-    p as weight.
-
-    modes, state: as in :func:`shear_of`.
-    local: what the coupling of short waves has in it; None: nothing.
-    """
-    # the square of the transform, where the mean itself has that of its magnitude: it is the
-    # mirrored one
-    strain = modes.C * (state.own * state.transform**2).real / state.v
-    found = -2.0 / state.q[0] * (modes.mine @ strain)
-    return found if local is None else found - local.mirrored
+    return s, (state.memory @ F.T).real
 
 
 def _moments(modes: CoverModes, z: float, state: CoverState) -> Floats:
@@ -191,9 +167,6 @@ def _moments(modes: CoverModes, z: float, state: CoverState) -> Floats:
         modes.mine * (modes.L * state.own) + (modes.shares[:, None] - state.compliance) * total
     )
     smooth = 2.0 / state.q[0] * (multipliers.imag @ (np.abs(state.transform) ** 2 / state.v))
-    if not modes.J.size:
-        # elastic bodies dissipate nothing
-        return 0.0 * smooth
     _, _, e, t, _, Q = modes.series
     within = Q @ (state.X * _edge_weights(modes, z, state) / e)
     return modes.weights @ (state.shares + t * within) + smooth
@@ -211,15 +184,17 @@ def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
     i2 = ratio[2]
     # i2_i - i2_l, from 1 - i2 = 2 I_1/(alpha I_0) where that is small
     rest_of_1 = 2.0 * ratio[1] / alpha
-    near_1 = np.minimum.outer(alpha, alpha) > 1.0
-    change = np.where(near_1, np.subtract.outer(-rest_of_1, -rest_of_1), np.subtract.outer(i2, i2))
+    change = np.where(
+        np.minimum.outer(alpha, alpha) > 1.0,
+        np.subtract.outer(-rest_of_1, -rest_of_1),
+        np.subtract.outer(i2, i2),
+    )
     sums = change * np.multiply.outer(alpha, alpha) / np.add.outer(alpha, alpha)
-    # the rest of the terms, which is smooth
-    m = np.arange(1, state.q.size + 1)
+    # the rest of the terms, which is smooth,
     # without the terms of the relaxation modes, and of Hertz, z in the first
     rest = state.q - 2.0 * ratio[1:] @ state.X
     rest[0] -= z
-    weights = -2.0 / alpha * (m[:, None] * ratio[1:])
+    weights = -2.0 / alpha * (np.arange(1, len(ratio))[:, None] * ratio[1:])
     weights[0] = i2
     return (z * i2 + sums @ state.X + rest @ weights) / state.q[0]
 
@@ -240,6 +215,8 @@ _MOMENTS = slice(3, 5)
 _FREE = slice(5, 7)
 #: functions that have a row each beside those of a table: L, f, g and the slopes
 _BESIDE = [_LIMIT, *range(5, _COUNT)]
+#: quantities whose limits for u -> infinity a record has
+_LIMITED = [_LIMIT, _LAM, *_BESIDE[1:]]
 #: offset in ln z of the first and a last solve beside the length found: slopes are differences
 _OFFSET = 3e-5
 #: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row
@@ -252,11 +229,6 @@ _BEYOND = 42
 #: nodes of the polynomials at either end, from 0.05 to 1 of their range: wide enough for the noise
 #: of the solve, which loses digits there, not to be amplified at 0
 _END_NODES = 52
-#: (quantities, degree of these polynomials): lam to the moments; and those by shear, with terms in
-#: ln u at low speed for nu < 1/2, from the memory of the pressure near the edges: where the first
-#: octave begins they jump by 4e-12 of 2 kappa delta_star/mu, with 12 by 4e-10, and their slopes by
-#: 1e-6, with 18 by 1e-4 for the noise of the solve
-_DEGREES = (slice(0, _FREE.start), 12), (slice(_FREE.start, None), 14)
 #: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too:
 #: without them M was wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9;
 #: more terms amplify the noise of the solve
@@ -300,11 +272,10 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
         )
         raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
     if not modes.series.a.size:
-        lam = slow_limit[_LAM]
-        L = slow_limit[_LIMIT]
+        L, lam = slow_limit[_LIMITED[:2]]
         # lam, epsilon, M/V of both bodies, eta/F = lam/L, H/F^2 = 1/L^2 (:func:`_stick_functions`)
         table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
-        limits = np.concatenate([[L, lam], slow_limit[_BESIDE[1:]], np.zeros(_COUNT)])
+        limits = np.append(slow_limit[_LIMITED], np.zeros(_COUNT))
         return CoverRows(0, table, constant_rows(*slow_limit[_BESIDE]), limits)
     # the cylinder's part in the instantaneous compliance 1/alpha of both, at most 1 but for
     # rounding
@@ -330,23 +301,19 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
     values = _solve_nodes(modes, u, orders)
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
-    y = np.ldexp(u[:_END_NODES], -e0)
-    slow_limit, _, slow = fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0], _DEGREES)
+    slow_limit, _, slow = fit_end(
+        np.ldexp(u[:_END_NODES], -e0), values[:, :_END_NODES], slow_limit, rows.t[0]
+    )
     inside = interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
     x = rows.x[last - e0 + 1 :]
     relaxes = cover.other_thickness is None and cover.other.alpha > 1.0 and cover.part < 1.0
-    fast, limits = _fit_fast_rows(
-        u[-_END_NODES:],
-        values[:, -_END_NODES:],
-        limits=fast_limit,
-        x=x,
-        begin=math.ldexp(1.0, last),
-        log_terms=_LOG_TERMS if relaxes else 0,
-    )
+    ends = u[-_END_NODES:], values[:, -_END_NODES:], fast_limit
+    fast, limits = _fit_fast_rows(*ends, x, math.ldexp(1.0, last), _LOG_TERMS if relaxes else 0)
     fitted = np.concatenate([slow[:, :, None], inside, fast], axis=2)
-    pressure = rows.fit_slopes(*fitted[:, : _FREE.start])
     powers = np.append(
-        pressure, rows.fit_slopes(*fitted[:, _FREE.start :], terms=SHORT_TERMS), axis=0
+        rows.fit_slopes(*fitted[:, : _FREE.start]),
+        rows.fit_slopes(*fitted[:, _FREE.start :], terms=SHORT_TERMS),
+        axis=0,
     )
     # the limit at rest exactly, not as the fit has it
     powers[:, 0, 0] = slow_limit
@@ -395,6 +362,7 @@ def _solve_node(
     Raises ParameterError where the secant method has not ended after 40 solves.
     """
     goal = -math.log(4.0 * stiffness * u * u)
+    solves = 1
     if start is None:
         # the length of elastic half-spaces, z = e^(goal/2), divided by the root of a stiffness that
         # rises from 1 to alpha where u passes 1, and shortened where the layer is thinner than 0.2
@@ -404,24 +372,25 @@ def _solve_node(
             - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0))
             - math.log1p(0.2 / modes.cover.thinnest)
         )
-        start = _find_length(modes, u, y=rough, slope=slope, orders=orders, goal=goal)[0][-1]
-        # a slope as good as one that is extrapolated
-        y, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
+        start = _find_length(modes, u, orders, goal, rough, slope)[0][-1]
+        # the first one for a slope as good as one that is extrapolated
+        solves = 2
+    for _ in range(solves):
+        y, errors, states = _find_length(modes, u, orders, goal, start + _OFFSET, slope)
         start = y[-1]
         slope = (errors[1] - errors[0]) / (y[1] - y[0])
-    y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders=orders, goal=goal)
-    slope = (errors[1] - errors[0]) / (y[1] - y[0])
-    # epsilon = g/z of each solve; y has one entry more, the step after the last solve
-    shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
+
+    def values_at(y: float, state: CoverState) -> Floats:
+        """Return lam = 2 z u, L = 2 u times the creep limit, epsilon = g/z and M/V at ln z = y."""
+        epsilon = state.shift * math.exp(-y)
+        return np.array([2.0 * math.exp(y) * u, 2.0 * u * state.creep_limit, epsilon, state.moment])
+
+    # y has one entry more, the step after the last solve
+    found = [*map(values_at, y, states)]
     other = 2.0 * y[-1] - y[0]
     beyond = solve(modes, math.exp(other), math.exp(other) * u, orders)
     load_slope = (errors[0] + goal - math.log(beyond.load)) / (y[0] - other)
-    shift_slope = (shifts[0] - beyond.shift * math.exp(-other)) / (y[0] - other)
-    # lam = 2 z u, L = 2 u times the creep limit, epsilon, M/V
-    found = [
-        np.array([2.0 * math.exp(each) * u, 2.0 * u * state.creep_limit, shift, state.moment])
-        for each, state, shift in zip(y, states, shifts)
-    ]
+    shift_slope = (found[0] - values_at(other, beyond))[_EPSILON] / (y[0] - other)
     # from the last solve, at y[-2], on to y[-1], in units of the step that led to it
     part = (y[-1] - y[-2]) / (y[-2] - y[-3])
     lam, L, epsilon, moment = found[-1] + (found[-1] - found[-2]) * part
@@ -435,20 +404,20 @@ def _solve_node(
     values = np.array(
         [lam, L, epsilon, *moments, *free, *(2.0 * u * shear.mirrored - free), *slopes]
     )
-    return values, y[-1], slope
+    return values, start, slope
 
 
 def _find_length(
-    modes: CoverModes, u: float, y: float, slope: float, orders: int, goal: float
+    modes: CoverModes, u: float, orders: int, goal: float, y: float, slope: float
 ) -> tuple[list[float], list[float], list[CoverState]]:
     """Find the half contact length that carries a load, by the secant method in ln z.
 
     modes: :class:`CoverModes` of the bodies.
     u: kappa |V|, dimensionless, > 0.
-    y: first ln z.
-    slope: first approximation of d ln H/d ln z, > 0.
     orders: number of terms of the pressure.
     goal: ln H of the load.
+    y: first ln z.
+    slope: first approximation of d ln H/d ln z, > 0.
     Returns (ln z of each solve, then that after the last step; ln H - goal of each solve; their
     states), at least two solves.
     Raises ParameterError where it has not ended after 40 solves.
@@ -492,10 +461,8 @@ def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:
     count = _EXTRAPOLATION.size
     # known: ln z and the slope d ln H/d ln z of each node
     for n, speed in enumerate(u.tolist()):
-        start, slope = (
-            (_EXTRAPOLATION @ known[n - count : n]).tolist() if n >= count else (None, 2.0)
-        )
-        values[:, n], *known[n] = _solve_node(modes, speed, orders, start, slope)
+        given = (_EXTRAPOLATION @ known[n - count : n]).tolist() if n >= count else ()
+        values[:, n], *known[n] = _solve_node(modes, speed, orders, *given)
     return values
 
 
@@ -516,7 +483,8 @@ def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     Returns the quantities of a node, (11,), dimensionless, epsilon and M/V exactly 0.
     Raises ParameterError where no contact length that carries the load is found.
     """
-    values = _solve_node(modes.elastic(share), 0.5, LEAST_TERMS, stiffness=stiffness)[0]
+    elastic = CoverModes(modes.cover.elastic(share))
+    values = _solve_node(elastic, 0.5, LEAST_TERMS, stiffness=stiffness)[0]
     # the solve leaves rounding in them
     values[_EPSILON : _MOMENTS.stop] = 0.0
     return values
@@ -545,19 +513,17 @@ def _fit_fast_rows(
     x_inverse = (begin / x).ravel()
     values = values.copy()
     values[_MOMENTS] /= y
-    limits, first, (fitted, slopes) = fit_end(
-        y, values, limits=limits, wanted=x_inverse, degrees=_DEGREES, log_terms=log_terms
-    )
+    limits, first, (fitted, slopes) = fit_end(y, values, limits, x_inverse, log_terms)
     slopes[_MOMENTS] = (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
     fitted[_MOMENTS] *= x_inverse
     # coefficients of y = begin/u become those of 1/u; M/V was divided by y, and its own are of
     # 1/u^2
     first *= begin
     first[_MOMENTS] *= begin
-    order = [_LIMIT, _LAM, *_BESIDE[1:]]
-    packed = np.concatenate([limits[order], first[order], first[[_EPSILON]], first[_MOMENTS]])
+    # epsilon and M/V stand side by side
+    packed = [limits[_LIMITED], first[_LIMITED], first[_EPSILON : _MOMENTS.stop]]
     # slopes over ln y have the other sign over ln u
-    return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
+    return np.stack([fitted, -slopes]).reshape(2, -1, *x.shape), np.concatenate(packed)
 
 
 def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
@@ -580,14 +546,12 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     """
     v = rows.x.ravel()
     u = v.copy()
-    # the last double within the rows, beyond which they cannot be read
-    end = math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
     for _ in range(60):
-        values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
+        values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, rows.last))
         # limits[:2] are L and lam for u -> infinity, limits[8:10] their factors of 1/u
         first = limits[8:10, None] / u
         (L, lam), (d_L, d_lam) = np.where(
-            u > end, [limits[:2, None] + first, -first], [values, slopes]
+            u > rows.last, [limits[:2, None] + first, -first], [values, slopes]
         )
         dlnu_dlnv = 1.0 / (1.0 - d_L / L)
         share = lam / L

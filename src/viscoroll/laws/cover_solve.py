@@ -29,8 +29,6 @@ surfaces that it makes by the coupling of short waves, which is that of half-spa
 (:func:`local_pressure`).
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -43,8 +41,6 @@ from .law_rows import modes_record
 
 # --- Steady rolling on bonded viscoelastic layers of finite thickness ---
 
-#: bodies in the order of all arrays that have one entry for each
-BODIES = ("base", "cylinder")
 #: terms of the pressure for theta -> 0
 _TERMS = 14
 #: further terms for each unit of theta; found by doubling all: results change by 3e-14 up to
@@ -56,27 +52,39 @@ LEAST_TERMS = 30
 #: largest half contact length divided by the thickness; there doubling the terms still changes
 #: results by less than 1e-10
 LARGEST_THETA = 6.0
-#: step of the trapezoidal rule in s for integrals over the wave number u = 0.6 ln(1 + e^s); halving
-#: it changes nothing
-_STEP = 0.3
-#: factor of ln(1 + e^s) in that substitution
-_SCALE = 0.6
-#: ends of that rule in s: above the last one the integrands are below rounding; the first one, u =
-#: 2.5e-18, is far below the poles u = i beta/theta of slow memories at the speeds of the fastest
-#: ones: with 3e-12 epsilon was wrong by 1e-8 where rates are eight decades apart
-_ENDS = -40.0, 20.0 / 0.6
-#: step of the trapezoidal rule in s for integrals over t = 2 ln(1 + e^s), the memory of one
-#: polynomial
-_DECAY_STEP = 0.14
-#: factor of ln(1 + e^s) in that substitution
-_DECAY_SCALE = 2.0
-#: ends of that rule in s
-_DECAY_ENDS = -33.0, 18.0
+#: step, factor and ends of the trapezoidal rule in s (:func:`half_line_rule`) for integrals over
+#: the wave number u = 0.6 ln(1 + e^s).  Halving the step changes nothing.  Above the last end the
+#: integrands are below rounding; the first one, u = 2.5e-18, is far below the poles u = i
+#: beta/theta of slow memories at the speeds of the fastest ones: with 3e-12 epsilon was wrong by
+#: 1e-8 where rates are eight decades apart
+_WAVE_RULE = 0.3, 0.6, (-40.0, 20.0 / 0.6)
+#: those of the rule for integrals over t = 2 ln(1 + e^s), the memory of one polynomial
+_DECAY_RULE = 0.14, 2.0, (-33.0, 18.0)
 #: alpha_i from which on ratios of Bessel functions I_n/I_0 of the orders used here fall as
 #: exp(-n^2/(2 alpha_i)) to rounding; scipy has no values beyond 1e9
 LARGE_ALPHA = 1e8
 #: beta_j from which on the memory of a polynomial vanishes to rounding
 _LARGE_BETA = 1e12
+
+
+class Exponentials(NamedTuple):
+    """The relaxation and creep modes on a contact of half length z, as for a half-space;
+    dimensionless.
+
+    ratio : I_n/I_0 of alpha_i, [order, mode].
+    root : sqrt(I_1/I_0), (modes,).
+    k : K_0/K_1 of beta_j, (modes,).
+    x : B^-1 sqrt(r) (e, Q^T), r = I_1/I_0, B = 1 + sqrt(r) Q^T k Q sqrt(r): the matching at the
+        front edge, of the half-space (column 0) and of a source by each creep mode, (modes, 1 +
+        modes).
+    sigma : source that an excess memory of 1 is, for each creep mode, (modes,).
+    """
+
+    ratio: Floats
+    root: Floats
+    k: Floats
+    x: Floats
+    sigma: Floats
 
 
 class CoverState(NamedTuple):
@@ -150,7 +158,6 @@ class CoverModes:
     series : record of the modes of both (:func:`.law_rows.modes_record`), rates in 1/T_ref.
     J : creep strengths of both bodies together, (modes,).
     alpha : instantaneous divided by long-time stiffness of both together, float >= 1.
-    gap : relaxation rates less creep rates of both together, [creep, relaxation], in 1/T_ref.
     cover : the :class:`.bodies.Cover`.
     bodies : :class:`BodyModes` of both.
     shares : part of each in the long-time compliance, (2,).
@@ -172,13 +179,12 @@ class CoverModes:
         self.series = modes_record(modes)
         self.J = modes.J
         self.alpha = float(cover.total.alpha)
-        self.gap = modes.gap
         self.cover = cover
         self.shares = np.array([1.0 - cover.share, cover.share])
         self.weights = np.stack([cover.half_space_weights, 1.0 - cover.half_space_weights])
         bodies = []
         kernels = []
-        for name, share, sign in zip(BODIES, self.shares.tolist(), (1.0, -1.0)):
+        for name, share, sign in zip(("base", "cylinder"), self.shares.tolist(), (1.0, -1.0)):
             series, nu, thickness = cover.body(name)
             # a rigid body, whose share is 0, has no coupling
             local = sign * local_coupling(nu) if share else 0.0
@@ -191,18 +197,8 @@ class CoverModes:
                 # u is the wave number times the thickness, and the thickness is over l0
                 kernels.append([u / thickness, L, shear, sign * C, mine, 1.0 - mine])
         self.bodies = tuple(bodies)
-        together = np.concatenate(kernels, axis=1)
-        self.wave, self.L, self.shear, self.C = together[:4]
-        self.mine = together[4:]
-
-    def elastic(self, share: float) -> CoverModes:
-        """Return the same bodies without relaxation: both elastic, with their Poisson's ratios and
-        thicknesses.
-
-        share: the cylinder's part of the compliance of both bodies, in [0, 1].
-        Returns a new :class:`CoverModes` without modes, of alpha = 1.
-        """
-        return CoverModes(self.cover.elastic(share))
+        self.wave, self.L, self.shear, self.C, *own = np.concatenate(kernels, axis=1)
+        self.mine = np.array(own)
 
 
 def half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
@@ -230,7 +226,7 @@ def layer_nodes(nu: float) -> Floats:
     L - 1, T - L and C less that of a half-space (:func:`layer_excess`), each times du/u of its
     node.
     """
-    u, du = half_line_rule(_STEP, _SCALE, _ENDS)
+    u, du = half_line_rule(*_WAVE_RULE)
     return np.array([u, *(layer_excess(nu, u) * (du / u))])
 
 
@@ -265,7 +261,7 @@ def _decay_nodes() -> tuple[Floats, Floats]:
     """
     # with x = cosh t the power is exp(-n t) and dx = sinh t dt; cosh t - 1 = 2 sinh^2(t/2) keeps
     # its digits
-    t, weights = half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
+    t, weights = half_line_rule(*_DECAY_RULE)
     orders = np.arange(term_count(LARGEST_THETA) * 2 + 1)[:, None]
     return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
 
@@ -295,26 +291,6 @@ def term_count(theta: float) -> int:
     return math.ceil(_TERMS + _TERMS_PER_THETA * theta)
 
 
-class Exponentials(NamedTuple):
-    """The relaxation and creep modes on a contact of half length z, as for a half-space;
-    dimensionless.
-
-    ratio : I_n/I_0 of alpha_i, [order, mode].
-    root : sqrt(I_1/I_0), (modes,).
-    k : K_0/K_1 of beta_j, (modes,).
-    x : B^-1 sqrt(r) (e, Q^T), r = I_1/I_0, B = 1 + sqrt(r) Q^T k Q sqrt(r): the matching at the
-        front edge, of the half-space (column 0) and of a source by each creep mode, (modes, 1 +
-        modes).
-    sigma : source that an excess memory of 1 is, for each creep mode, (modes,).
-    """
-
-    ratio: Floats
-    root: Floats
-    k: Floats
-    x: Floats
-    sigma: Floats
-
-
 def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
     """Evaluate the relaxation and creep modes on a contact, as for a half-space.
 
@@ -338,20 +314,18 @@ def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
     k = k0e(beta) / k1e(beta)
     B = np.eye(root.size) + root[:, None] * ((Q.T * k) @ Q) * root
     x = np.linalg.solve(B, np.column_stack([root * e, root[:, None] * Q.T]))
-    return Exponentials(
-        ratio=ratio, root=root, k=k, x=x, sigma=np.sqrt(modes.J * b) / (beta * k1e(beta))
-    )
+    return Exponentials(ratio, root, k, x, np.sqrt(modes.J * b) / (beta * k1e(beta)))
 
 
-def _excess_memory(v: Floats, A: Floats, beta: Floats, D: Floats) -> Any:
+def _excess_memory(v: Floats, A: Floats, beta: Floats) -> Any:
     """Return the memory of exp(i v x) at the front edge, less that of its Chebyshev series.
 
     v: wave numbers times half contact length, dimensionless, (n,).
     A: signed Bessel functions there, as in :func:`bessel`, (N + 1, n).
     beta: b_j z of the creep modes of both bodies together, dimensionless, (modes,).
-    D: memory of the terms of the series, as in :func:`decays`, (N + 1, modes).
     Returns complex numbers (modes, n).
     """
+    D = decays(beta, len(A) - 1)
     # the Chebyshev series of exp(i v x) is A_0 + 2 sum A_n T_n over even n + 2 i sum A_n T_n over
     # odd n; D_0 = 1
     memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
@@ -370,13 +344,13 @@ def layer_operator(A: Floats, memory: Any, weights: Any) -> tuple[Floats, Floats
     n from 0.  c (modes, N): c q is the excess memory of that slope in each creep mode.
     """
     N = len(A) - 1
-    n = np.arange(N + 1)
+    n = np.arange(N + 1)[:, None]
     m = np.arange(1, N + 1)
-    odd = m % 2 == 1
+    odd = m % 2
     # the real part of the multiplier couples terms of equal parity, the imaginary part those of
     # unlike parity, with a sign that depends on which of the two is odd
     even_part, odd_part = (2.0 * (A @ (A[1:] * part).T) for part in (weights.real, weights.imag))
-    S = np.where((n[:, None] + m) % 2 == 1, odd_part * np.where(odd, m, -m), even_part * m)
+    S = np.where((n + m) % 2, odd_part * np.where(odd, m, -m), even_part * m)
     # the term T_0 has half of the factor 2 of the others
     S[0] *= 0.5
     weighted = memory * weights
@@ -389,7 +363,7 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
 
     Boundary elements agree to 2e-6 (``pipeline/evidence/prove/states.py``).  For thick layers the
     contact is that of half-spaces.
-    modes: :class:`CoverModes`; with those of :meth:`CoverModes.elastic` the result is that of
+    modes: :class:`CoverModes`; with those of :meth:`.bodies.Cover.elastic` the result is that of
         elastic bodies: ``X`` is empty, and the shift is 0 to rounding.
     z: half contact length divided by V T_ref, dimensionless, > 0 and finite.
     half: half contact length divided by l0, dimensionless, > 0; at most six times the thickness of
@@ -400,14 +374,11 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     N = orders or term_count(half / modes.cover.thinnest)
     v = half * modes.wave
     A = bessel(v, N)
-    k = v / z
-    # complex compliance of each body for exp(i k Y), Y being the position along the direction of
-    # rolling
+    # complex compliance of each body for exp(i k Y), k = v/z, Y being the position along the
+    # direction of rolling
+    k = (v / z)[:, None]
     compliance = np.array(
-        [
-            body.instant + (body.J * body.b / (body.b - 1j * k[:, None])).sum(axis=1)
-            for body in modes.bodies
-        ]
+        [body.instant + (body.J * body.b / (body.b - 1j * k)).sum(axis=1) for body in modes.bodies]
     )
     own = (modes.mine * compliance).sum(axis=0)
     part = own / compliance.sum(axis=0)
@@ -416,8 +387,7 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     _, b, e, t, _, Q = modes.series
     X0 = e / root * x[:, 0]
     Xi = (e / root)[:, None] * x[:, 1:] * sigma
-    D = decays(b * z, N)
-    memory = _excess_memory(v, A, b * z, D)
+    memory = _excess_memory(v, A, b * z)
     S, c = layer_operator(A, memory, modes.L * part)
     Phi = 2.0 * ratio[1:]
     right = Phi @ X0
@@ -482,7 +452,7 @@ def pressure(modes: CoverModes, z: float, half: float, x: Floats) -> Floats:
     from numpy.polynomial.chebyshev import chebder, chebval
 
     if z == np.inf:
-        modes = modes.elastic(modes.cover.share)
+        modes = CoverModes(modes.cover.elastic(modes.cover.share))
         z = 1.0
     state = solve(modes, z, half)
     # I_n/I_0 is below rounding from n = 9 sqrt(alpha) on
@@ -512,21 +482,9 @@ def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) 
     return terms
 
 
-class LocalPressure(NamedTuple):
-    """The coupling C of short waves, that of half-spaces, of each body, times its compliance, of
-    the pressure.
-
-    terms : coefficients of T_n(x), over the compliance of both bodies, (intervals + 1, 2).
-    mirrored : mean of the coupling, mirrored about the middle, with the pressure as weight, (2,).
-    """
-
-    terms: Floats
-    mirrored: Floats
-
-
-def local_pressure(modes: CoverModes, z: float, state: CoverState) -> LocalPressure:
-    """Return the coupling of the pressure as on half-spaces, by values at 513 points that are
-    equidistant in arccos x.
+def local_pressure(modes: CoverModes, z: float, state: CoverState) -> tuple[Floats, Floats]:
+    """Return the coupling of the pressure as on half-spaces, that of short waves, by values at 513
+    points that are equidistant in arccos x.
 
     At each point it is C J p: C = (1 - 2 nu)/(2 - 2 nu), J the compliance of the body with its
     memory.  The mean is accurate to 1e-5 of itself, as the pressure is taken as linear between
@@ -534,7 +492,9 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> LocalPress
     modes: :class:`CoverModes` of the bodies.
     z: half contact length divided by V T_ref, dimensionless, > 0.
     state: :class:`CoverState` of the contact of that length.
-    Returns :class:`LocalPressure`, with the base first; 0 of a body of nu = 1/2 and of a rigid one.
+    Returns (its Chebyshev coefficients of T_n(x), over the compliance of both bodies, (intervals +
+    1, 2); its mean, mirrored about the middle of the contact, with the pressure as weight, (2,)),
+    with the base first; 0 of a body of nu = 1/2 and of a rigid one.
     """
     from scipy.fft import dct, dst
 
@@ -558,14 +518,15 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> LocalPress
             values[n] = body.local * p
             continue
         # its compliance over that of both has poles at the relaxation rates of both
-        J = body.instant - modes.weights[n] * modes.J * modes.series.b @ (1.0 / modes.gap)
+        gap = modes.cover.total.modes.gap
+        J = body.instant - modes.weights[n] * modes.J * modes.series.b @ (1.0 / gap)
         strengths = -(e * e * a) * J
         values[n] = body.local * (body.instant * modes.alpha * p + strengths @ _memory(p, x, a * z))
     # Chebyshev coefficients of values at these points; the last one, also twice its value, is not
     # used
     terms = dct(values, type=1, axis=1).T / _INTERVALS
     terms[0] *= 0.5
-    return LocalPressure(terms, mirrored)
+    return terms, mirrored
 
 
 def _memory(p: Floats, x: Floats, rates: Floats) -> Floats:

@@ -4,8 +4,8 @@ this package or another program.
 A grid is in SI units where its V has a unit, else dimensionless as a :class:`viscoroll.Scene`: V
 over R/T_epsilon, Q over the load, M over load times radius, delta = (omega R - V)/V in both.
 
-Splines are tensor splines by scipy (:func:`fit_spline`), which are packed into the form that
-compiled code reads (:func:`pack_spline`, ``kernels.splines``).
+Tensor splines by scipy are packed into the form that compiled code reads (:func:`pack_spline`,
+``kernels.splines``).
 """
 
 import io
@@ -42,8 +42,8 @@ from .law_table import LawTable, coupled_table
 
 #: SI unit of each variable of a grid; a moment divided by a length is a force
 UNITS = {"V": "m/s", "delta": "1", "Q": "N/m", "M": "N", "M_half_space": "N", "M_cylinder": "N"}
-#: methods to interpolate to an alpha between the nodes, by the number of nodes less 1
-_METHODS = ("nearest", "linear", "quadratic", "cubic")
+#: methods to interpolate to an alpha between the nodes, by the number of nodes less 2
+_METHODS = ("linear", "quadratic", "cubic")
 #: error of a value relative to the largest of its variable: files may have six digits only
 _ROUNDING = 1e-5
 #: fraction of the largest |Q| by which Q may fall where delta grows: other programs iterate to
@@ -55,8 +55,8 @@ _FILL_VALUES = np.array(
 )
 #: moments, which of a layer depend on the traction and have either sign
 _MOMENTS = "M", "M_half_space", "M_cylinder"
-#: field -> lowest and highest value that a contact has, beside moments
-_BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(("lam", "delta_star"), (0.0, np.inf))
+#: field -> highest value that a contact has, beside moments; the lowest is 0
+_HIGHEST = {"beta": 1.0, "lam": np.inf, "delta_star": np.inf}
 #: largest file that is read, bytes
 _MOST_BYTES = 1 << 31
 
@@ -120,9 +120,8 @@ class LawGrid:
         return coupled_table(1.0, rows)
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
-        """Raise the OutOfTableError of a state that the caller has found to be outside the axes.
-
-        It always raises: for V if |V| is beyond the fastest speed, else for delta, without
+        """Raise the OutOfTableError of a state that the caller has found to be outside the axes:
+        for V if |V| is beyond the fastest speed, else for delta, without
         comparing delta with its axis.
         V: speed in the unit of the grid, a number or an array of one; of V = 0 the error states an
             infinite or NaN delta, and numpy gives a RuntimeWarning.
@@ -147,8 +146,32 @@ def friction_limit(attributes: Any) -> float:
     """
     if "mu" not in attributes:
         return np.inf
-    mu, load = (check_number(name, attributes.get(name, 1.0), above=0.0) for name in ("mu", "load"))
-    return mu * load
+    return _positive(attributes, "mu") * _positive(attributes, "load")
+
+
+def _positive(attributes: Any, name: str) -> float:
+    """Return the attribute ``name`` of a grid, a number, 1 where it is not stated; raises
+    ParameterError unless it is finite and > 0.
+    """
+    return check_number(name, attributes.get(name, 1.0), above=0.0)
+
+
+def increases(nodes: Floats) -> bool:
+    """Return whether each of ``nodes``, (n,), is larger than the one before."""
+    return bool((np.diff(nodes) > 0.0).all())
+
+
+def check_alpha(alpha: Any, ends: Any, source: Any) -> float:
+    """Return ``alpha``, what a caller gave, as a number.
+
+    ends: lowest and highest alpha that is allowed.
+    source: the file, and perhaps advice, for the message.
+    Raises ParameterError for None, what is no single number, and a number outside.
+    """
+    low, high = ends
+    if alpha is not None and low <= (number := check_number("alpha", alpha)) <= high:
+        return number
+    raise ParameterError("alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {source}")
 
 
 def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
@@ -196,23 +219,21 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         return None
     names = [name for name in (*UNITS, "alpha") if name in table.variables]
     if "M" not in names and not {"M_half_space", "M_cylinder"} <= set(names):
-        raise FileError(
+        raise _no_law(
             path,
-            "is not a grid of a law, since it has neither the variable M (the rolling moment at "
-            "each V) nor both M_half_space and M_cylinder: add it, or rename the moment to M",
+            "it has neither the variable M (the rolling moment at each V) nor both M_half_space "
+            "and M_cylinder: add it, or rename the moment to M",
         )
     for name in names:
-        if not (table[name].size and table[name].dtype.kind in "iuf"):
-            problem = f"is not a grid of a law, since {name} = {describe_value(table[name].values)}"
-            raise FileError(path, f"{problem}: must be real numbers, at least one")
-        refuse_filled(table[name], path)
-        if name in ("V", "delta") and (
-            table[name].size < 2 or (np.diff(table[name].values) <= 0.0).any()
-        ):
-            raise FileError(
-                path,
-                f"is not a grid of a law, since {name} does not increase over two nodes or more",
+        variable = table[name]
+        if not (variable.size and variable.dtype.kind in "iuf"):
+            found = (
+                f"{name} = {describe_value(variable.values)}: must be real numbers, at least one"
             )
+            raise _no_law(path, found)
+        refuse_filled(variable, path)
+        if name in ("V", "delta") and not (variable.size > 1 and increases(variable.values)):
+            raise _no_law(path, f"{name} does not increase over two nodes or more")
     with _told_of(path):
         table = _in_si(table)
         check_nodes(table, path)
@@ -221,20 +242,24 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         return _law_of(table)
 
 
+def _no_law(path: Any, reason: Any) -> FileError:
+    """Return the FileError, not raised, of a file that is not the grid of a law, by ``reason``."""
+    return FileError(path, f"is not a grid of a law, since {reason}")
+
+
 @contextmanager
 def _told_of(path: Any) -> Iterator[None]:
     """Raise KeyError, ValueError and TypeError of the body of the ``with`` as FileError; a context
     manager.
 
-    Such errors come of a missing variable, of values that scipy refuses and of attributes; the
-    FileError quotes the text of a ParameterError.
-
+    They come of a missing variable, of values that scipy refuses and of attributes; the text of a
+    ParameterError is quoted.
     path: path of the file, for the error.
     """
     try:
         yield
     except ParameterError as error:
-        raise FileError(path, f"is not a grid of a law, since {error}") from error
+        raise _no_law(path, error) from error
     except (KeyError, ValueError, TypeError) as error:
         allowed = "V(V), delta(delta), Q(V, delta) and M(V) or M(V, delta), perhaps over alpha too"
         raise FileError(
@@ -253,12 +278,10 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
     """
     if bad.any():
         first = np.argwhere(bad)[0]
-        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first, strict=True))
-        found = (
-            f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at "
-            f"{place or 'its only node'}"
-        )
-        raise FileError(path, f"is not a grid of a law, since {found}: must be {allowed}")
+        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first))
+        found = describe_value(variable.values[tuple(first)].item())
+        where = f"{variable.name} = {found} at {place or 'its only node'}"
+        raise _no_law(path, f"{where}: must be {allowed}")
 
 
 def refuse_filled(variable: DataArray, path: Any) -> None:
@@ -276,28 +299,18 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
     _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
     _refuse_nodes(variable, filled, path, "another number, as this one stands for a missing value")
+    # limits beyond which a file declares values as missing (CF conventions 1.11, section 2.5.1)
     with _told_of(path):
-        low, high = _valid_range(variable)
+        low, high = variable.attrs.get("valid_range", (-np.inf, np.inf))
+        limits = (variable.attrs.get("valid_min", low), variable.attrs.get("valid_max", high))
+        packed = np.array([np.asarray(limit, float).item() for limit in limits])
+        factor = variable.encoding.get("scale_factor", 1.0)
+        # limits of packed numbers are packed too, and a negative factor exchanges them
+        low, high = np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
     margin = _ROUNDING * np.abs((low, high))
     invalid = (values < low - margin[0]) | (values > high + margin[1])
     valid = f"in [{low:g}, {high:g}], beyond which the file declares values as missing"
     _refuse_nodes(variable, invalid, path, valid)
-
-
-def _valid_range(variable: DataArray) -> Floats:
-    """Return the range outside of which a file declares values as missing, by the attributes
-    ``valid_range``, ``valid_min`` and ``valid_max`` (CF conventions 1.11, section 2.5.1).
-
-    variable: variable of a grid; packed numbers, whose limits are packed too, are unpacked.
-    Returns (low, high), infinite where none is declared; raises ValueError and TypeError for
-    attributes that are no numbers.
-    """
-    low, high = variable.attrs.get("valid_range", (-np.inf, np.inf))
-    limits = (variable.attrs.get("valid_min", low), variable.attrs.get("valid_max", high))
-    packed = np.array([np.asarray(limit, float).item() for limit in limits])
-    factor = variable.encoding.get("scale_factor", 1.0)
-    # a negative factor exchanges low and high
-    return np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
 
 
 def check_nodes(table: Dataset, path: Any) -> None:
@@ -318,55 +331,37 @@ def check_nodes(table: Dataset, path: Any) -> None:
     Raises ParameterError for a mu or load that is no finite number > 0.
     """
     limit = friction_limit(table.attrs)
-    arm = check_number("R", table.attrs.get("R", 1.0), above=0.0)
+    arm = _positive(table.attrs, "R")
     most = limit / table.attrs.get("mu", 1.0) * arm  # the load acts within R of the axis
-    for name, (low, high) in (_BOUNDS | dict.fromkeys(_MOMENTS, (0.0, most))).items():
+    for name, high in (_HIGHEST | dict.fromkeys(_MOMENTS, most)).items():
         if name in table.variables and not (name in _MOMENTS and "delta" in table[name].dims):
             values = table[name].values
             rounding = _ROUNDING * np.abs(values).max()
-            bad = (values < low - rounding) | (values > high + rounding)
-            _refuse_nodes(
-                table[name],
-                bad,
-                path,
-                f"in [{low:g}, {high:g}]" if high < np.inf else f">= {low:g}",
-            )
-    if "Q" in table.variables:
-        Q = table["Q"].transpose(..., "delta")
-        _refuse_nodes(
-            Q,
-            np.abs(Q.values) > limit * (1.0 + _ROUNDING),
-            path,
-            f"at most {limit:.6g} in size, the friction limit mu P",
-        )
-        noise = _NOISE * np.abs(Q.values).max()
-        # + 0 Q: in the shape of Q
-        creep = (table["delta"] - table.get("delta_0", 0.0) + 0.0 * Q).transpose(*Q.dims).values
-        against = Q.values * np.sign(creep) < -noise
-        against[..., 1:-1] = False  # of a layer without delta_0 the sign changes beside delta = 0
-        _refuse_nodes(
-            Q,
-            against,
-            path,
-            "of the same sign as delta, as a roller with omega R > V is driven forward by Q > 0",
-        )
-        if "M" in table.variables and "delta" in table["M"].dims:
-            M = table["M"].transpose(*Q.dims)
-            of_cylinder = table.get("M_cylinder", 0.5 * M).transpose(*Q.dims)
-            lost = (M + table["delta"] * (arm * Q + of_cylinder)).transpose(*Q.dims)
-            # noise/_NOISE is the largest |Q|
-            made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), arm * noise / _NOISE)
-            _refuse_nodes(
-                M, made, path, "larger, as the lost power M + delta (R Q + M_cylinder) is below 0"
-            )
-        # before the first node -infinity: it never falls there
-        falls = np.diff(Q.values, prepend=-np.inf) < -noise
-        _refuse_nodes(
-            Q,
-            falls,
-            path,
-            "at least Q at the next smaller delta, as Q does not fall where delta grows",
-        )
+            bad = (values < -rounding) | (values > high + rounding)
+            allowed = f"in [0, {high:g}]" if high < np.inf else ">= 0"
+            _refuse_nodes(table[name], bad, path, allowed)
+    Q = table["Q"].transpose(..., "delta")
+    allowed = f"at most {limit:.6g} in size, the friction limit mu P"
+    _refuse_nodes(Q, np.abs(Q.values) > limit * (1.0 + _ROUNDING), path, allowed)
+    noise = _NOISE * np.abs(Q.values).max()
+    # + 0 Q: in the shape of Q
+    creep = (table["delta"] - table.get("delta_0", 0.0) + 0.0 * Q).transpose(*Q.dims).values
+    against = Q.values * np.sign(creep) < -noise
+    against[..., 1:-1] = False  # of a layer without delta_0 the sign changes beside delta = 0
+    allowed = "of the same sign as delta, as a roller with omega R > V is driven forward by Q > 0"
+    _refuse_nodes(Q, against, path, allowed)
+    if "M" in table.variables and "delta" in table["M"].dims:
+        M = table["M"].transpose(*Q.dims)
+        of_cylinder = table.get("M_cylinder", 0.5 * M).transpose(*Q.dims)
+        lost = M + table["delta"] * (arm * Q + of_cylinder)
+        # noise/_NOISE is the largest |Q|
+        made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), arm * noise / _NOISE)
+        allowed = "larger, as the lost power M + delta (R Q + M_cylinder) is below 0"
+        _refuse_nodes(M, made, path, allowed)
+    # before the first node -infinity: it never falls there
+    falls = np.diff(Q.values, prepend=-np.inf) < -noise
+    allowed = "at least Q at the next smaller delta, as Q does not fall where delta grows"
+    _refuse_nodes(Q, falls, path, allowed)
 
 
 def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
@@ -384,22 +379,19 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
     """
     if "alpha" not in table.dims:
         if alpha is not None:
-            words = f"left out: {path} has no axis alpha"
-            raise ParameterError("alpha", describe_value(alpha), words)
+            raise ParameterError(
+                "alpha", describe_value(alpha), f"left out: {path} has no axis alpha"
+            )
         return table
     nodes = table["alpha"].values
-    if not (nodes[0] > 0.0 and (np.diff(nodes) > 0.0).all()):
+    if not (nodes[0] > 0.0 and increases(nodes)):
         raise FileError(path, "coordinate 'alpha' must be > 0 and increase strictly")
-    low, high = nodes[[0, -1]]
-    if alpha is None or not low <= check_number("alpha", alpha) <= high:
-        raise ParameterError("alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {path}")
-    if low == high:
+    wanted = np.log(check_alpha(alpha, nodes[[0, -1]], path))
+    if nodes.size == 1:
         return table.squeeze("alpha")
     # by the number of nodes, the last for all larger numbers
-    method: Any = _METHODS[min(table.sizes["alpha"], len(_METHODS)) - 1]
-    return table.assign_coords(alpha=np.log(table["alpha"])).interp(
-        alpha=np.log(alpha), method=method
-    )
+    method: Any = _METHODS[min(nodes.size - 2, 2)]
+    return table.assign_coords(alpha=np.log(nodes)).interp(alpha=wanted, method=method)
 
 
 def _in_si(table: Dataset) -> Dataset:
@@ -412,21 +404,21 @@ def _in_si(table: Dataset) -> Dataset:
     Raises ParameterError for a unit that is missing or of another dimension, and in SI units for a
     missing attribute R or, beside mu, load.
     """
-    names = [name for name in UNITS if name in table.variables]
-    given = {name: str(table[name].attrs.get("units", "missing")) for name in names}
-    for name, unit in given.items():
-        wanted = "1" if given["V"] == "1" else UNITS[name]
+    dimensionless = str(table["V"].attrs.get("units")) == "1"
+    for name in (name for name in UNITS if name in table):
+        unit = str(table[name].attrs.get("units", "missing"))
+        wanted = "1" if dimensionless else UNITS[name]
         try:
             by = conversion_factor(unit, wanted)[0]
         except ParameterError as error:
             allowed = "1" if wanted == "1" else f"{wanted} or a multiple of it"
             if name == "V":
                 allowed += ", or 1 of a dimensionless grid"
-            elif given["V"] == "1":
+            elif dimensionless:
                 allowed += ", as the unit of V is 1"
             raise ParameterError(f"attribute units of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(float) * by})
-    if given["V"] == "1":
+    if dimensionless:
         return table.assign_attrs(R=1.0, load=1.0, scale=DIMENSIONLESS)
     # the load is needed only to make a limit of mu
     for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
@@ -450,14 +442,14 @@ def _law_of(table: Dataset) -> LawGrid:
     single node, other dimensions, or an R, or a mu and load, that are no finite numbers > 0.
     """
     V = check_array("V", table["V"].values, above=0.0)
-    delta = table["delta"].values.astype(float)
+    delta = table["delta"].values
     limit = friction_limit(table.attrs)
     most = limit if limit < np.inf else 1.0
     Q = table["Q"].transpose("V", "delta").values
     slips = bool((Q[:, [0, -1]] * [-1.0, 1.0] >= (1.0 - _ROUNDING) * limit).all())
     bodies = [table[name] if name in table else 0.5 * table["M"] for name in _MOMENTS[1:]]
-    moments = (field.broadcast_like(table["Q"]).transpose("V", "delta") for field in bodies)
-    fields = np.stack([Q / most, *(field.values for field in moments)], axis=-1)
+    moments = [field.broadcast_like(table["Q"]).transpose("V", "delta") for field in bodies]
+    fields = np.stack([Q / most, *moments], axis=-1)
     # at V = 0 Q as at the slowest speed, and M over V alone is 0
     still = [1.0, *(float("delta" in field.dims) for field in bodies)]
     # the last row stands for infinite speed, which kernels refuse: beyond V[-1] nothing is known
@@ -473,67 +465,30 @@ def _law_of(table: Dataset) -> LawGrid:
         zeros = [CubicSpline(delta, row).roots(extrapolate=False) for row in fields[..., 0]]
         edges[:, 3] = [2.0 * zero[zero.size // 2] for zero in zeros]
     # the ends exactly, which rounding would miss
-    t = np.concatenate([[-1.0], (delta[1:-1] - middle) / half, [1.0]])
+    t = (delta - middle) / half
+    t[[0, -1]] = -1.0, 1.0
     rows = CoupledRows(
-        mu=most,
-        u=V,
-        t=t,
-        edges=edges,
-        fields=fields,
+        most,
+        V,
+        t,
+        edges,
+        fields,
         graded=False,
         fastest=V[-1],
         slips=slips,
-        limit=1.0 if limit < np.inf else np.inf,
+        limit=limit / most,
     )
     return LawGrid(
         rows=rows,
-        R=check_number("R", table.attrs["R"], above=0.0),
-        load=check_number("load", table.attrs.get("load", 1.0), above=0.0),
+        R=_positive(table.attrs, "R"),
+        load=_positive(table.attrs, "load"),
         title=str(table.attrs.get("title", "of another program")),
-        kappa=check_number("kappa", table.attrs["kappa"], above=0.0)
-        if "kappa" in table.attrs
-        else None,
+        kappa=_positive(table.attrs, "kappa") if "kappa" in table.attrs else None,
         scale=table.attrs["scale"],
     )
 
 
 # --- Tensor splines on grids, by scipy ---
-
-
-def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
-    """Return the not-a-knot tensor spline through values on a grid, of lower degree along axes of
-    few nodes.
-
-    Parameters
-    ----------
-    values : values at the nodes, (nodes of the first axis, nodes of the second, ...); without axes
-        a number or array.
-    axes : coordinates of the nodes, increasing, at least two, one array (nodes,) for each axis of
-        ``values``, in that order; an empty list for a single value.
-    degree : 1 or 3; along an axis of fewer than degree + 1 nodes it is the number of nodes less 1.
-
-    Returns
-    -------
-    scipy.interpolate.NdBSpline
-        Over all axes, in their order; it takes points (..., axes) and returns values (...).
-        Without axes ``values`` itself.
-
-    Raises
-    ------
-    ValueError
-        Of scipy, for values that are not finite, coordinates that do not increase, and an axis of a
-        single node.
-    """
-    from scipy.interpolate import NdBSpline, make_interp_spline
-
-    knots = []
-    degrees = tuple(min(degree, axis.size - 1) for axis in axes)
-    for n, axis in enumerate(axes):
-        one = make_interp_spline(axis, values, k=degrees[n], axis=n)
-        knots.append(one.t)
-        # scipy returns coefficients with the axis of the spline first
-        values = np.moveaxis(one.c, 0, n)
-    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees) if axes else values
 
 
 def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
@@ -572,7 +527,8 @@ def pack_spline(
 
     Parameters
     ----------
-    found : a spline of :func:`fit_spline`, or the value, a number, of a field over no axis.
+    found : a not-a-knot tensor spline, a scipy.interpolate.NdBSpline over all axes of the field; or
+        the value, a number, of a field over no axis.
     axes : names of its axes, in their order, of "V", "delta" and "alpha".
     logs : names of the axes in whose logarithm it runs; other names in it have no effect.
     bounds : lowest and highest value, to which kernels clip results, in the unit of the values;
@@ -587,9 +543,9 @@ def pack_spline(
         last axis fastest, with 3 - degree zeros after the last ones of each axis.
     """
     # an axis that the field is not over: no interval, one basis spline, which is 1
-    vectors = dict.fromkeys(
-        ("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15)
-    )
+    constant = np.zeros(21)
+    constant[[1, 5]] = 1.0
+    vectors = dict.fromkeys(("V", "delta", "alpha"), constant)
     # kernels read four coefficients along each axis: the zeros keep them within the vector
     values = np.pad(found.c, [(0, 3 - degree) for degree in found.k]) if axes else np.asarray(found)
     for n, name in enumerate(axes):

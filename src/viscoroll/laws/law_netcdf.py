@@ -46,10 +46,10 @@ from ..materials import (
     read_law,
     series_as_toml,
 )
-from .law_grid import load_grid
-from .law_rows import FIELDS, CoupledRows
+from .law_grid import check_alpha, load_grid
+from .law_rows import CoupledRows
 from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
-from .row_layout import COVER_FUNCTIONS, STEADY, CoverRows, steady_table
+from .row_layout import STEADY, CoverRows, steady_table
 
 #: attributes of a cover that its file states besides the series; the last one where the other body
 #: is a layer
@@ -78,8 +78,11 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     if isinstance(material, Pair):
         return replace(law_table(material.law), T_ref=material.T_ref, pair=material)
     if not is_real(material):
-        allowed = "a Material, a Cylinder, a Prony, Bodies, or the number alpha"
-        raise ParameterError("material", describe_value(material), allowed)
+        raise ParameterError(
+            "material",
+            describe_value(material),
+            "a Material, a Cylinder, a Prony, Bodies, or the number alpha",
+        )
     return law_table(check_number("alpha", material, low=1.0, high=HIGHEST_ALPHA))
 
 
@@ -97,29 +100,25 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> Data
     """
     if isinstance(law, LawAxis):
         return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
-    text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(
-        law.material
-    )
-    if law.coupled is not None:
-        rows = law.coupled
-        # make_dataset reads the numbers of a kind of file as attributes of one object
-        numbers = SimpleNamespace(**vars(rows), alpha=law.alpha, T_ref=law.T_ref)
-        numbers.coefficients = rows.fields
-        title = f"{_title(law)}, mu = {rows.mu:g}"
-        return make_dataset(numbers, COUPLED, title, rows.errors | dict(errors), material=text)
-    if law.cover is None:
+    texts = [bodies_as_toml(given) for given in (law.pair, law.material) if given is not None]
+    title = _title(law)
+    if law.moment_of_speed_alone:
         bodies = "unlike" if law.unlike else "alike"
-        material = bodies_as_toml(law.pair or law.material)
-        return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
-    creep = np.moveaxis(law.cover.creep, 0, -1)
-    numbers = SimpleNamespace(
-        coefficients=np.concatenate([law.steady_coefficients[..., STEADY], creep], axis=-1),
-        limits=law.cover.limits,
-        e0=law.e0,
-        alpha=law.alpha,
-        T_ref=law.T_ref,
-    )
-    return make_dataset(numbers, COVER, _title(law), errors, material=text)
+        return make_dataset(law, LAW, title, errors, bodies=bodies, material=texts[0])
+    if law.coupled is not None:
+        kind = COUPLED
+        title += f", mu = {law.coupled.mu:g}"
+        errors = law.coupled.errors | dict(errors)
+        own = vars(law.coupled) | {"coefficients": law.coupled.fields}
+    else:
+        kind = COVER
+        cover: Any = law.cover
+        creep = np.moveaxis(cover.creep, 0, -1)
+        coefficients = np.concatenate([law.steady_coefficients[..., STEADY], creep], axis=-1)
+        own = {"coefficients": coefficients, "limits": cover.limits}
+    # make_dataset reads the numbers of a kind of file as attributes of one object
+    numbers = SimpleNamespace(**(vars(law) | own))
+    return make_dataset(numbers, kind, title, errors, material="\n".join(texts))
 
 
 def _title(table: LawTable) -> str:
@@ -187,16 +186,8 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
             )
         return parse_law(content, path)
     axis = parse_axis(content, path)
-    low, high = axis.alpha
-    if (
-        alpha is None
-        or not low <= check_number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high
-    ):
-        wider = "`viscoroll tables law --alpha LOW:HIGH` writes another range"
-        raise ParameterError(
-            "alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {path} ({wider})"
-        )
-    return axis.at(alpha)
+    wider = "`viscoroll tables law --alpha LOW:HIGH` writes another range"
+    return axis.at(check_alpha(alpha, axis.alpha, f"{path} ({wider})"))
 
 
 def parse_law(content: Content, path: Any) -> LawTable:
@@ -222,31 +213,23 @@ def parse_law(content: Content, path: Any) -> LawTable:
         given, pair = _parse_bodies(attributes["material"], path)
         coefficients = _coefficients(content)
         if kind == COUPLED:
-            law = coupled_table(given, _parse_rows(coefficients, numbers))
-            return replace(law, T_ref=float(numbers["T_ref"]), pair=pair)
-        e0 = int(numbers["e0"])
-        if kind == COVER:
+            u, t, edges = (
+                lock_array(np.array(numbers[name], dtype=float)) for name in ("u", "t", "edges")
+            )
+            if coefficients.shape[:-1] != (u.size + 2, t.size) or edges.shape != (u.size + 2, 4):
+                raise ValueError(f"its functions have shape {coefficients.shape[:-1]}")
+            rows = CoupledRows(float(numbers["mu"]), u, t, edges, coefficients)
+            law = coupled_table(given, rows)
+        elif kind == COVER:
             functions = np.moveaxis(coefficients, -1, 0)
             # the file has the functions of steady rolling, all but N, and then those of covers
-            table = steady_table(functions[: -len(COVER_FUNCTIONS)])
-            creep = functions[-len(COVER_FUNCTIONS) :]
-            law = make_table(given, cover=CoverRows(e0, table, creep, numbers["limits"]))
+            steady, creep = np.split(functions, [len(STEADY)])
+            table = steady_table(steady)
+            cover = CoverRows(int(numbers["e0"]), table, creep, numbers["limits"])
+            law = make_table(given, cover=cover)
         else:
-            law = law_table(given, coefficients=coefficients)
-        return replace(law, e0=e0, T_ref=float(numbers["T_ref"]), pair=pair)
-
-
-def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
-    """Return the rows of a coupled table.
-
-    fields: of shape (rows, places, 8).
-    numbers: other variables of the file, of which u, t, edges and mu are read.
-    Raises ValueError for shapes that do not go together, KeyError for a variable that is missing.
-    """
-    u, t, edges = (lock_array(np.array(numbers[name], dtype=float)) for name in ("u", "t", "edges"))
-    if fields.shape != (u.size + 2, t.size, len(FIELDS)) or edges.shape != (u.size + 2, 4):
-        raise ValueError(f"its functions have shape {fields.shape[:-1]}")
-    return CoupledRows(mu=float(numbers["mu"]), u=u, t=t, edges=edges, fields=fields)
+            law = replace(law_table(given, coefficients), e0=int(numbers["e0"]))
+        return replace(law, T_ref=float(numbers["T_ref"]), pair=pair)
 
 
 def parse_axis(content: Content, path: Any) -> LawAxis:
@@ -287,11 +270,12 @@ def _refuse_incomplete(path: Any) -> Iterator[None]:
     manager.
 
     path: path of the file, for the error.
-    Replaces FileError, ParameterError, KeyError, TypeError and ValueError; other exceptions pass.
+    Replaces FileError, KeyError, TypeError and ValueError (ParameterError is one); other exceptions
+    pass.
     """
     try:
         yield
-    except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
+    except (FileError, KeyError, TypeError, ValueError) as error:
         raise FileError(
             path,
             "is damaged or was edited: its variables, or its attribute material, are not those "
@@ -313,9 +297,10 @@ def bodies_as_toml(given: Any) -> str:
         text += "" if given.base is None else f"\n{material_as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
     if isinstance(given, Cover):
-        values = {name: getattr(given, name) for name in _COVER_ATTRIBUTES}
         lines = [
-            f"{name} = {json.dumps(value)}" for name, value in values.items() if value is not None
+            f"{name} = {json.dumps(value)}"
+            for name in _COVER_ATTRIBUTES
+            if (value := getattr(given, name)) is not None
         ]
         if given.other.alpha > 1.0:
             lines.append(f"other = {{ {series_as_toml(given.other)} }}")
@@ -360,6 +345,6 @@ def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
     if "bodies" in content:
         given = content["bodies"]
         series = {name: parse_series(path, "bodies", given[name]) for name in ("cylinder", "base")}
-        return Bodies(**series, share=given["share"], poisson=given.get("poisson")), None
+        return Bodies(**(given | series)), None
     given = content["scene"]
     return given["alpha"] if "alpha" in given else parse_series(path, "scene", given), None

@@ -34,7 +34,7 @@ from ..kernels.numerics.interpolation import (
     to_chebyshev,
     to_doubles,
 )
-from ..materials import Bodies, Modes, Prony, lock_array
+from ..materials import COUPLED, KINDS, Bodies, Modes, Prony, lock_array, series_of_alpha
 
 # --- Polynomials of one variable over octaves ---
 
@@ -87,6 +87,11 @@ class Rows:
         nodes = np.ldexp(0.25 * (self.t + 3.0), self.e0 + np.arange(self.count)[:, None])
         nodes[0] = np.ldexp(self.t[0], self.e0)
         return nodes
+
+    @property
+    def last(self) -> float:
+        """Largest double within the rows, beyond which they cannot be read."""
+        return math.nextafter(math.ldexp(1.0, self.e0 + self.count - 1), 0.0)
 
     @cached_property
     def dlnx_dt(self) -> Floats:
@@ -156,10 +161,9 @@ class Rows:
         derivative = self.fit(slopes * self.dlnx_dt, terms - 1)
         powers = np.zeros_like(derivative)
         powers[..., 1:] = derivative[..., :-1] / np.arange(1, TERMS)
-        # values at the nodes of the integral without its constant, by Horner's scheme
-        integral = np.zeros_like(values)
-        for k in range(TERMS - 1, -1, -1):
-            integral = integral * self.t + powers[..., k, None]
+        # values at the nodes of the integral without its constant
+        by_power = np.moveaxis(powers, -1, 0)[..., None]
+        integral = np.polynomial.polynomial.polyval(self.t, by_power, tensor=False)
         # the differences are nearly equal: the mean of their deviations from the first keeps the
         # last digits
         difference = values - integral
@@ -213,23 +217,26 @@ _ASIDE = 18
 _TINY = 1e-30
 
 
+#: (quantities of a cover, degree of their polynomials at either end of the speeds): lam to the
+#: moments; and those by shear, with terms in ln u at low speed for nu < 1/2, from the memory of the
+#: pressure near the edges: where the first octave begins they jump by 4e-12 of 2 kappa
+#: delta_star/mu, with 12 by 4e-10, and their slopes by 1e-6, with 18 by 1e-4 for the noise of the
+#: solve
+_DEGREES = (slice(0, 5), 12), (slice(5, None), 14)
+
+
 def fit_end(
-    y: Floats,
-    values: Floats,
-    limits: Floats,
-    wanted: Floats,
-    degrees: tuple[tuple[slice, int], ...],
-    log_terms: int = 0,
+    y: Floats, values: Floats, limits: Floats, wanted: Floats, log_terms: int = 0
 ) -> tuple[Floats, Floats, Floats]:
     """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares, at one
     end of the speeds.
 
     y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
-    values: quantities at the nodes (at the fast end M/(V y)), (k, n).
+    values: quantities of a cover (:mod:`.cover_rows`) at the nodes (at the fast end M/(V y)), (k,
+        n), k = 11.
     limits: values for y -> 0, (k,); for NaN the value at 0 of a polynomial through the values is
         taken.
     wanted: points in (0, 1], (m,), m >= 1.
-    degrees: (quantities, degree of P) of groups of quantities, all of them in order.
     log_terms: number of terms of R; 0: none.
     Returns (limits, (k,), with the values at 0 in place of NaN; P + R ln y at the last of the
     points, (k,); values and derivatives with respect to ln y at the points, (2, k, m)).
@@ -252,7 +259,7 @@ def fit_end(
         Returns (k, points), complex where ``at`` is.
         """
         found = []
-        for some, n in degrees:
+        for some, n in _DEGREES:
             factors = np.linalg.lstsq(basis(y, n, log_terms), values[some].T, rcond=None)[0]
             found.append((basis(at, n, log_terms) @ factors).T)
         return np.concatenate(found)
@@ -307,9 +314,11 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
     Returns None for other times.
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
-        allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref"
-        found = f"range from {1.0 / fastest:g} to {1.0 / slowest:g} times T_ref"
-        raise described_error("times of relaxation and creep", found, allowed)
+        raise described_error(
+            "times of relaxation and creep",
+            f"range from {1.0 / fastest:g} to {1.0 / slowest:g} times T_ref",
+            f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref",
+        )
 
 
 def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
@@ -328,13 +337,11 @@ def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
 
     # [..., j, i]: creep modes by relaxation modes, as modes.gap, which is a_i - b_j
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
-    e = np.sqrt(modes.E / modes.a)
-    t = np.sqrt(modes.J / modes.b)
     return Series(
         a=modes.a,
         b=modes.b,
-        e=e,
-        t=t,
+        e=np.sqrt(modes.E / modes.a),
+        t=np.sqrt(modes.J / modes.b),
         weights=np.empty(0) if weights is None else weights,
         Q=np.sqrt(strengths) / modes.gap,
     )
@@ -350,22 +357,13 @@ def series_record(material: Any) -> tuple[Any, Floats]:
     bodies have weights, also if they are alike.  For alphas they are a copy, (n,), (1,) of a
     number, and the record has one mode, which the kernel overwrites with each alpha in turn.
     """
-    from ..kernels.law.material_series import Series
-
     if isinstance(material, Bodies):
         # the kernel writes into the record, and the weights of a pair are read only
         return modes_record(material.total.modes, material.half_space_weights.copy()), np.empty(0)
     if isinstance(material, Prony):
         return modes_record(material.modes), np.empty(0)
-    one = Series(
-        a=np.ones(1),
-        b=np.ones(1),
-        e=np.ones(1),
-        t=np.ones(1),
-        weights=np.empty(0),
-        Q=np.ones((1, 1)),
-    )
-    return one, np.array(material, dtype=float).reshape(-1)
+    # any series of one mode
+    return modes_record(series_of_alpha(2.0).modes), np.array(material, dtype=float).reshape(-1)
 
 
 class ModesValues(NamedTuple):
@@ -399,26 +397,17 @@ def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
 
     series, alpha = series_record(material)
     values = np.zeros((2 * FUNCTIONS + 1, z.size))
-    z = z.view()
-    z.flags.writeable = False  # kernels are compiled for arguments that are read only
     if series.a.size:
-        modes_loop(series, alpha, new_workspace(series.a.size), z, values)
+        # kernels are compiled for arguments that are read only
+        modes_loop(series, alpha, new_workspace(series.a.size), lock_array(z.view()), values)
     return ModesValues(values[:FUNCTIONS], values[FUNCTIONS:-1], values[-1])
 
 
 # --- Nodes of the coupled law of one scene, and the splines that kernels read of them ---
 
-#: fields in the order of :attr:`CoupledRows.fields`
-FIELDS = (
-    "Q_over_mu",
-    "M_half_space",
-    "M_cylinder",
-    "lam",
-    "epsilon",
-    "beta",
-    "work_half_space",
-    "work_cylinder",
-)
+#: fields in the order of :attr:`CoupledRows.fields`: Q_over_mu, M_half_space, M_cylinder, lam,
+#: epsilon, beta, work_half_space, work_cylinder
+FIELDS = tuple(KINDS[COUPLED].functions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -463,45 +452,51 @@ class CoupledRows:
         from ..kernels.law import coupled_splines as layout
 
         x = np.log(self.u)
-        along = self._slopes_along if self.graded else _free_slopes
         fields = self.fields
         if self.graded:
             fields = np.concatenate([fields, self._friction()[..., None]], axis=-1)
         over_t = self._slopes_in_t(fields)
-        jets = np.stack([fields, along(x, fields), over_t, along(x, over_t)], axis=-1)
-        edges = np.stack([self.edges, along(x, self.edges)], axis=-1)
-        head = np.zeros(layout.HEAD)
-        head[[layout.ROWS, layout.NODES, layout.GRADED]] = self.u.size + 2, self.t.size, self.graded
-        head[[layout.FIRST, layout.LAST, layout.MOST]] = self.u[0], self.u[-1], self.fastest
-        head[layout.U_STEP : layout.U_STEP + 2] = _equal_step(x)
-        head[layout.T_STEP : layout.T_STEP + 2] = _equal_step(self.t)
-        begin = layout.HEAD + np.cumsum([x.size, self.t.size, edges.size])
-        head[[layout.T_BEGIN, layout.EDGES, layout.FIELDS]] = begin
-        head[[layout.FIELD_COUNT, layout.SLIPS, layout.LIMIT]] = (
-            fields.shape[-1],
+        jets = [fields, self._slopes_in_u(fields), over_t, self._slopes_in_u(over_t)]
+        edges = np.stack([self.edges, self._slopes_in_u(self.edges)], axis=-1)
+        # in the order of the indices of the layout
+        head = [
+            self.u.size + 2,  # ROWS
+            self.t.size,  # NODES
+            self.graded,
+            self.u[0],  # FIRST
+            self.u[-1],  # LAST
+            *_equal_step(x),  # U_STEP
+            *_equal_step(self.t),  # T_STEP
+            *(layout.HEAD + np.cumsum([x.size, self.t.size, edges.size])),  # T_BEGIN, EDGES, FIELDS
+            fields.shape[-1],  # FIELD_COUNT
+            self.fastest,  # MOST
             self.slips,
             self.limit,
-        )
+        ]
         # field by field: a kernel reads all nodes of one field
-        planes = np.moveaxis(jets, 2, 0)
+        planes = np.moveaxis(np.stack(jets, axis=-1), 2, 0)
         return lock_array(np.concatenate([head, x, self.t, edges.ravel(), planes.ravel()]))
 
-    def _slopes_along(self, x: Floats, values: Floats) -> Floats:
-        """Return slopes over ln u, by cubic splines that join the limits smoothly.
+    def _slopes_in_u(self, values: Floats) -> Floats:
+        """Return slopes over ln u, by cubic splines that join the limits smoothly where the nodes
+        are graded.
 
-        x: ln u of the nodes, ascending, (n,).
         values: values in the limit u = 0, at the nodes, and in the limit u -> infinity, (n + 2,
             ...).
-        Returns the slopes in the shape of ``values``, 0 in both limits; the slope at an end node is
-        the difference of its value from that of the limit beside it.
+        Returns the slopes in the shape of ``values``, 0 in both limits; of graded nodes the slope
+        at an end node is the difference of its value from that of the limit beside it.
         """
         from scipy.interpolate import CubicSpline
 
         # 1: a condition on the first derivative; from an end node to its limit fields are linear in
         # u or 1/u, and the slope over ln u at the node is this difference
         ends = (1, values[1] - values[0]), (1, values[-1] - values[-2])
+        x = np.log(self.u)
+        nodes = values[1:-1]
         found = np.zeros_like(values)
-        found[1:-1] = CubicSpline(x, values[1:-1], bc_type=ends)(x, 1)
+        found[1:-1] = (
+            CubicSpline(x, nodes, bc_type=ends)(x, 1) if self.graded else _slopes(x, nodes)
+        )
         return found
 
     def _friction(self) -> Floats:
@@ -525,10 +520,10 @@ class CoupledRows:
         from scipy.interpolate import CubicSpline
 
         if not self.graded:
-            slopes = np.moveaxis(_slopes(self.t, np.moveaxis(fields, 1, 0)), 0, 1)
+            slopes = _slopes(self.t, fields, axis=1)
             # a field that does not depend on creep has slopes of exactly 0, not of rounding
             return np.where(np.ptp(fields, axis=1, keepdims=True) > 0.0, slopes, 0.0)
-        middle = int(np.argmin(np.abs(self.t)))
+        middle = self.t.size // 2
         found = np.zeros_like(fields)
         # each side by itself: fields have a corner in the middle, which the grading of t makes flat
         for side in (slice(0, middle + 1), slice(middle, None)):
@@ -542,25 +537,18 @@ def grade(t: Any) -> Any:
     return 1.0 - (1.0 - np.square(t)) ** 1.5
 
 
-def _slopes(x: Floats, values: Floats) -> Floats:
-    """Return slopes at nodes, (n, ...), of the not-a-knot spline, of lower degree for few nodes."""
+def _slopes(x: Floats, values: Floats, axis: int = 0) -> Floats:
+    """Return slopes at nodes ``x`` along an axis of ``values``, in their shape, of the not-a-knot
+    spline, of lower degree for few nodes.
+    """
     from scipy.interpolate import make_interp_spline
 
-    return np.asarray(make_interp_spline(x, values, k=min(3, x.size - 1))(x, 1))
-
-
-def _free_slopes(x: Floats, values: Floats) -> Floats:
-    """Return slopes over x = ln u of the spline through ``values[1:-1]``, 0 in the rows of both
-    limits.
-    """
-    found = np.zeros_like(values)
-    found[1:-1] = _slopes(x, values[1:-1])
-    return found
+    return np.asarray(make_interp_spline(x, values, k=min(3, x.size - 1), axis=axis)(x, 1))
 
 
 def _equal_step(x: Any) -> tuple[float, float]:
-    """Return the step of coordinates in equal steps and its inverse, else two zeros."""
+    """Return the step of ascending coordinates in equal steps and its inverse, else two zeros."""
     steps = np.diff(x)
     step = float(steps.mean())
-    equal = np.ptp(steps) <= 1e-12 * np.abs(steps).max() * x.size
+    equal = np.ptp(steps) <= 1e-12 * steps.max() * x.size
     return (step, 1.0 / step) if equal else (0.0, 0.0)

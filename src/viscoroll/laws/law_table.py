@@ -17,7 +17,6 @@ quantities are dimensionless; M/V is in units of P T_ref.
 
 import math
 import threading
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
@@ -25,11 +24,13 @@ from typing import Any
 import numpy as np
 
 from ..core import Floats, ParameterError, check_number, described_error
+from ..kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
 from ..materials import HIGHEST_ALPHA, Bodies, Cover, Pair, Prony, lock_array, total_series
 from .cover_rows import cover_rows
 from .law_rows import CoupledRows, Rows, evaluate_by_modes, refuse_distant_times, row_range
 from .row_layout import (
     FUNCTIONS,
+    N_COLUMN,
     CoverRows,
     constant_rows,
     from_axis,
@@ -48,80 +49,37 @@ _ROUNDING_OF_N = 3e-15
 _NEWTON_STEPS = 2
 
 
-@dataclass(frozen=True)
-class _FunctionsOfW:
-    """Polynomials of w = 1/z for g/z, h/z, and M/V of half-space and cylinder; dimensionless.
+def _solve_for_w(
+    rows: Rows, powers: Floats, values: Floats, x: Floats, n: int
+) -> tuple[Floats, Floats]:
+    """Return the functions of w = 1/z where w = x (1 + g/z) (n = 1) or w = 2 x (1 + 2 h/z)^(1/2) (n
+    = 2), that is w = n x (1 + n f)^(1/n), by Newton's method.
 
-    rows : octaves of w, as :class:`.law_rows.Rows`.
-    powers : coefficients, (4, rows, 24 powers).
-    values : values at the nodes, (4, nodes), the nodes of all rows one after another.
+    Two steps are made from an interpolated start; the error that is left is subtracted to first
+    order from the values.
+    rows: octaves of w, as :class:`.law_rows.Rows`.
+    powers: coefficients of g/z, h/z, and M/V of half-space and cylinder, (4, rows, 24 powers).
+    values: values of these at the nodes, (4, nodes), the nodes of all rows one after another.
+    x: v = 1/F(eta) for n = 1, u = kappa |V| for n = 2, dimensionless, > 0, (points,), such that w
+        lies within ``rows``, which is not checked.
+    n: 1 or 2; f is the n-th of the functions.
+    Returns (values of the four functions; their derivatives with respect to ln x), (4, points)
+    each, dimensionless.
     """
-
-    rows: Rows
-    powers: Floats
-    values: Floats
-
-    def at_speed(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return lam, epsilon, and M/V of half-space and cylinder at u, and their derivatives with
-        respect to ln u.
-
-        :func:`fit_rows` fits the rows of u to it.
-        u: kappa |V|, dimensionless, > 0, shape (n,), such that w = 2 u (1 + 2 h/z)^(1/2) lies
-            within ``rows``, which is not checked.
-        Returns (values of the four functions, their derivatives), (4, n) each, dimensionless.
-        """
-        (shift, rise, *parts), (d_shift, d_rise, *d_parts) = self._solve(
-            u, 1, lambda whole: 2.0 * np.sqrt(whole)
-        )
-        lam = 1.0 / np.sqrt(1.0 + 2.0 * rise)
-        return np.stack([lam, shift, *parts]), np.stack([-(lam**3) * d_rise, d_shift, *d_parts])
-
-    def at_stick_limit(self, v: Floats) -> tuple[Floats, Floats]:
-        """Return eta/F and H/F^2 at v, and their derivatives with respect to ln v.
-
-        :func:`fit_rows` fits the rows of v to it.
-        v: 1/F(eta), dimensionless, > 0, shape (n,), such that w = v (1 + g/z) lies within ``rows``,
-            which is not checked; eta is half the transit time of the stick zone.
-        Returns (values of both functions, their derivatives), (2, n) each, dimensionless.
-        """
-        (shift, rise, *_), (d_shift, d_rise, *_) = self._solve(v, 0, lambda whole: whole)
-        share = 1.0 / (1.0 + shift)
-        press = (1.0 + 2.0 * rise) * share**2
-        fall = share * d_shift
-        return np.stack([share, press]), np.stack(
-            [-share * fall, 2.0 * (d_rise * share**2 - press * fall)]
-        )
-
-    def _solve(
-        self, x: Floats, which: int, factor: Callable[[Floats], Floats]
-    ) -> tuple[Floats, Floats]:
-        """Return the functions where w = x factor(1 + g/z) or w = x factor(1 + 2 h/z), by Newton's
-        method.
-
-        Two steps are made from an interpolated start; the error that is left is subtracted to first
-        order from the values.
-        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), such that w lies within
-            ``rows``, which is not checked.
-        which: index into ``powers`` of the function in the equation: 0 for g/z, 1 for h/z, of which
-            twice is taken.
-        factor: function of the sum in brackets, an array of any shape, that returns an array of
-            that shape.
-        Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with
-        respect to ln x), (4, n) each, dimensionless.
-        """
-        nodes = self.rows.x.ravel()
-        x_of_nodes = nodes * (1.0 / factor(1.0 + (1 + which) * self.values[which]))
-        w = np.exp(np.interp(np.log(x), np.log(x_of_nodes), np.log(nodes)))
-        for _ in range(_NEWTON_STEPS):
-            (value,), (slope,) = self.rows.read(self.powers[[which]], w)
-            whole = 1.0 + (1 + which) * value
-            # for both factors the relative change of factor(whole) with ln w is slope/whole, since
-            # the root halves the factor 2 of 2 h/z
-            w += (x * factor(whole) - w) / (1.0 - slope / whole)
-        values, slopes = self.rows.read(self.powers, w)
-        whole = 1.0 + (1 + which) * values[which]
-        dlnw_dlnx = 1.0 / (1.0 - slopes[which] / whole)
-        return values + slopes * ((x * factor(whole) / w - 1.0) * dlnw_dlnx), slopes * dlnw_dlnx
+    nodes = rows.x.ravel()
+    x_of_nodes = nodes * (1.0 / (n * (1.0 + n * values[n - 1]) ** (1.0 / n)))
+    w = np.exp(np.interp(np.log(x), np.log(x_of_nodes), np.log(nodes)))
+    for _ in range(_NEWTON_STEPS):
+        (value,), (slope,) = rows.read(powers[[n - 1]], w)
+        whole = 1.0 + n * value
+        # for both n the relative change of w/x with ln w is slope/whole, since the root halves the
+        # factor 2 of 2 h/z
+        w += (x * (n * whole ** (1.0 / n)) - w) / (1.0 - slope / whole)
+    found, slopes = rows.read(powers, w)
+    whole = 1.0 + n * found[n - 1]
+    dlnw_dlnx = 1.0 / (1.0 - slopes[n - 1] / whole)
+    error = x * (n * whole ** (1.0 / n)) / w - 1.0
+    return found + slopes * (error * dlnw_dlnx), slopes * dlnw_dlnx
 
 
 def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
@@ -146,37 +104,25 @@ def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
     # at low speed g/z and h/z are T_mean w/2, with w = t 2^e0
     powers[:2, 0, :2] = [0.0, math.ldexp(0.5 * mean, e0)]
     powers[2:, 0, 0] = T_mean
-    functions = _FunctionsOfW(w, powers, by_modes.values)
     x = rows.x.ravel()
-    both = zip(functions.at_speed(x), functions.at_stick_limit(x), strict=True)
-    powers = rows.fit_slopes(*(np.concatenate(parts).reshape(-1, *rows.x.shape) for parts in both))
+    # lam, epsilon and M/V at u = x
+    of_w = w, powers, by_modes.values
+    (shift, rise, *parts), (d_shift, d_rise, *d_parts) = _solve_for_w(*of_w, x, 2)
+    lam = 1.0 / np.sqrt(1.0 + 2.0 * rise)
+    values = [lam, shift, *parts]
+    derivatives = [-(lam**3) * d_rise, d_shift, *d_parts]
+    # eta/F and H/F^2 at v = x
+    (shift, rise, *_), (d_shift, d_rise, *_) = _solve_for_w(*of_w, x, 1)
+    share = 1.0 / (1.0 + shift)
+    press = (1.0 + 2.0 * rise) * share**2
+    fall = share * d_shift
+    values += [share, press]
+    derivatives += [-share * fall, 2.0 * (d_rise * share**2 - press * fall)]
+    powers = rows.fit_slopes(*np.reshape([values, derivatives], (2, -1, *rows.x.shape)))
     powers[[0, 4, 5], 0, 0] = 1.0
     powers[1, 0, :2] = [0.0, math.ldexp(mean, e0)]
     powers[2:4, 0, 0] = T_mean
     return steady_table(powers)
-
-
-def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
-    """Return a table with the coefficients of N in M = M(V) + N dV/dt, which the rows of steady
-    rolling do not have.
-
-    material: alpha > 1 as a float, a :class:`.prony.Prony` of one material or a
-        :class:`.bodies.Bodies` of one pair; not elastic, and no cover.
-    table: rows of its steady rolling, (rows, 24 powers, 7 functions), of which lam is read; not
-        changed.
-    e0: exponent of the end of the first row, which is [0, 2^e0).
-    Returns a copy of the table with the column of N, in units of P T_ref^2; its value at rest is
-    set to the exact limit.
-    """
-    rows = Rows(e0, len(table))
-    whole = table.copy()
-    (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())
-    # z = lam/(2 u), and infinite at rest
-    *N, at_rest = evaluate_by_modes(material, np.append(0.5 * lam / rows.x.ravel(), np.inf)).N
-    powers = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
-    powers[0, 0] = at_rest
-    whole[:, :, FUNCTIONS.index("N")] = powers
-    return whole
 
 
 # --- The law of one material or pair as a table ---
@@ -246,13 +192,21 @@ class LawTable:
         """Return the coefficients (rows, 24 powers, 7 functions), functions in the order of
         :data:`.row_layout.FUNCTIONS`.
 
-        Those of N, in units of P T_ref^2, are computed at the first use.  For a cover N is not
-        known: its column is NaN.
+        Those of N in M = M(V) + N dV/dt, in units of P T_ref^2, are computed at the first use; the
+        value at rest is set to the exact limit.  For a cover N is not known: its column is NaN.
         """
         table = self.steady_coefficients
-        if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
+        if self.cover is not None or not np.isnan(table[0, 0, N_COLUMN]):
             return table
-        return lock_array(fit_unsteady(self.material, table, self.e0))
+        rows = Rows(self.e0, len(table))
+        (lam,), _ = rows.read(table[None, ..., FUNCTIONS.index("lam")], rows.x.ravel())
+        # z = lam/(2 u), and infinite at rest
+        z = np.append(0.5 * lam / rows.x.ravel(), np.inf)
+        *N, at_rest = evaluate_by_modes(self.material, z).N
+        whole = table.copy()
+        whole[..., N_COLUMN] = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
+        whole[0, 0, N_COLUMN] = at_rest
+        return lock_array(whole)
 
     def pair_with(self, base: Any, plane: Any) -> Pair:
         """Return the bodies of the law in SI units, which it has in ``pair``, in ``plane``.
@@ -262,14 +216,19 @@ class LawTable:
         of a law of two different bodies.
         """
         if self.pair is None:
-            allowed = "the law of a Material in SI units; a dimensionless one is for a Scene"
-            raise described_error("material", "is a dimensionless law", allowed)
+            raise described_error(
+                "material",
+                "is a dimensionless law",
+                "the law of a Material in SI units; a dimensionless one is for a Scene",
+            )
         if base is not None:
-            allowed = "left out: the law already contains both bodies"
-            raise described_error("base", "is given", allowed)
+            raise described_error(
+                "base", "is given", "left out: the law already contains both bodies"
+            )
         if plane != self.pair.plane and not self.pair.like:
-            allowed = f"{self.pair.plane!r}, for which the law was computed"
-            raise ParameterError("plane", repr(plane), allowed)
+            raise ParameterError(
+                "plane", repr(plane), f"{self.pair.plane!r}, for which the law was computed"
+            )
         return Pair(self.pair.cylinder, self.pair.base, plane)
 
     @cached_property
@@ -292,14 +251,7 @@ class LawTable:
     @cached_property
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`.law_record.Law`)."""
-        made = pack_record(
-            self.steady_coefficients,
-            self.e0,
-            alpha=self.alpha,
-            fast_limit=self.fast_limit,
-            cover=self.cover,
-        )
-        return made if self.coupled is None else made._replace(table=self.coupled.vector)
+        return pack_record(self)
 
     @cached_property
     def unsteady_record(self) -> Any:
@@ -346,9 +298,8 @@ def law_table(
         material = float(material)
     elif material.shape:
         raise ParameterError("material", repr(material), "a single material: make a call for each")
-    elif isinstance(material, Bodies) and not isinstance(material, Cover):
-        if material.like or material.alpha == 1.0:
-            material = material.total if material.total.E.size else 1.0
+    elif type(material) is Bodies and (material.like or material.alpha == 1.0):
+        material = material.total if material.total.E.size else 1.0
     if coefficients is not None:
         return make_table(material, coefficients)
     # threads wait for the one that makes a table, in place of making it again
@@ -363,8 +314,7 @@ def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
     rows: :class:`.law_rows.CoupledRows` of it, which become ``coupled``.
     Returns a new table, whose other functions are those of half-spaces without coupling.
     """
-    total = total_series(material)
-    base = law_table(total if total.E.size else 1.0)
+    base = law_table(total_series(material))
     return replace(base, material=material, unlike=True, coupled=rows)
 
 
@@ -392,9 +342,7 @@ def make_table(
     of more than 64 modes, and for a cover that is too thin.
     """
     total = total_series(material)
-    unlike = isinstance(material, Bodies)
     modes = total.modes
-    alpha = total.alpha
     weights = (
         material.half_space_weights if isinstance(material, Bodies) else np.full(modes.J.size, 0.5)
     )
@@ -417,24 +365,22 @@ def make_table(
         refuse_distant_times(modes.b[0], modes.a[-1])
         e0, count = map(int, row_range(modes.b[0], modes.a[-1]))
         if coefficients is None:
-            coefficients = fit_rows(material, Rows(e0, count), alpha, sums[1:, 2])
+            coefficients = fit_rows(material, Rows(e0, count), total.alpha, sums[1:, 2])
     else:  # elastic bodies: lam = eta/F = H/F^2 = 1, and neither shift nor moment
         coefficients = steady_table(constant_rows(1.0, 0.0, 0.0, 0.0, 1.0, 1.0), N=0.0)
-    arrays = (coefficients, sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights)
-    coefficients, fast_limit, E, tau, J, T, weights = map(lock_array, arrays)
     return LawTable(
         material=material,
-        steady_coefficients=coefficients,
+        steady_coefficients=lock_array(coefficients),
         e0=e0,
-        alpha=alpha,
+        alpha=total.alpha,
         T_mean=T_mean,
-        unlike=unlike,
-        fast_limit=fast_limit,
-        relaxation_strength=E,
-        relaxation_time=tau,
-        creep_strength=J,
-        retardation_time=T,
-        half_space_weight=weights,
+        unlike=isinstance(material, Bodies),
+        fast_limit=lock_array(sums[:, :2]),
+        relaxation_strength=lock_array(modes.E),
+        relaxation_time=lock_array(1.0 / modes.a),
+        creep_strength=lock_array(modes.J),
+        retardation_time=lock_array(1.0 / modes.b),
+        half_space_weight=lock_array(weights),
         cover=cover,
     )
 
@@ -485,25 +431,16 @@ class LawAxis:
         """Return the law of one ``alpha``, with T_epsilon for the unit of time.
 
         alpha: instantaneous divided by long-time modulus, dimensionless, from the lowest to the
-            highest alpha of the axis (:attr:`alpha`), both included.
+            highest alpha of the axis (:attr:`alpha`), both included; not checked.
         Returns the :class:`LawTable`, whose rows are interpolated in ln alpha to rounding; of 1
         that of elastic bodies, a single row of constants.
-
-        Raises
-        ------
-        ParameterError
-            An alpha outside the axis, or no finite number.
         """
-        low, high = self.alpha
-        alpha = check_number("alpha", alpha, low=low, high=high)
         if alpha == 1.0:
             return law_table(1.0)
         # the highest alpha is the end of the last octave, not the begin of another
         n = min(math.frexp(alpha)[1] - 1 - self.first, len(self.rows) - 1)
         s = 2.0 * (math.log2(alpha / 2.0 ** (n + self.first))) - 1.0
-        columns = np.asarray(
-            np.polynomial.chebyshev.chebval(s, self.coefficients[n, :, : self.rows[n]])
-        )
+        columns: Any = np.polynomial.chebyshev.chebval(s, self.coefficients[n, :, : self.rows[n]])
         return make_table(alpha, from_axis(columns, (alpha - 1.0) / alpha))
 
 
@@ -522,21 +459,21 @@ def law_axis(low: float, high: float) -> LawAxis:
     low, high = (check_number("alpha", value, low=1.0, high=HIGHEST_ALPHA) for value in (low, high))
     if not low < high:
         raise ParameterError("alpha", f"{low:g} to {high:g}", "two numbers, the lower one first")
-    octaves = range(math.frexp(low)[1] - 1, math.ceil(math.log2(high)))
+    first = math.frexp(low)[1] - 1
     pieces = []
-    for octave in octaves:
+    for octave in range(first, math.ceil(math.log2(high))):
         tables = tables_of_octave(octave)
         # T_mean of one relaxation time is (alpha - 1)/alpha, in units of T_epsilon
         c = np.array([table.T_mean for table in tables])[:, None, None, None]
         columns = to_axis(np.array([table.coefficients for table in tables]), c)
         # coefficients of T_0 to T_15 in s = 2 log2(alpha/2^n) - 1
-        pieces.append(np.einsum("jk,k...->j...", _nodes()[1], columns))
+        pieces.append(np.einsum("jk,k...->j...", to_chebyshev(TERMS_OF_ALPHA), columns))
     rows = tuple(piece.shape[1] for piece in pieces)
-    coefficients = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
-    for padded, piece in zip(coefficients, pieces, strict=True):
-        padded[:, : piece.shape[1]] = piece
+    padded = [
+        np.pad(piece, [(0, 0), (0, max(rows) - len(piece[0])), (0, 0), (0, 0)]) for piece in pieces
+    ]
     # the slowest rate of creep is 1/T_epsilon for every alpha, and so e0 is the same
-    return LawAxis(lock_array(coefficients), rows, octaves[0], tables[0].e0)
+    return LawAxis(lock_array(np.array(padded)), rows, first, tables[0].e0)
 
 
 def tables_of_octave(octave: int) -> list[LawTable]:
@@ -547,14 +484,5 @@ def tables_of_octave(octave: int) -> list[LawTable]:
     Returns a list of :class:`LawTable`, in the order of the nodes, all with equal numbers of
     rows.
     """
-    return [make_table(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
-
-
-@lru_cache(maxsize=1)
-def _nodes() -> tuple[Floats, Floats]:
-    """Return the nodes of an octave in [-1, 1], (16,), and the matrix from values there to terms,
-    (16, 16).
-    """
-    from ..kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
-
-    return to_doubles(chebyshev(TERMS_OF_ALPHA)), to_chebyshev(TERMS_OF_ALPHA)
+    nodes = to_doubles(chebyshev(TERMS_OF_ALPHA))
+    return [make_table(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * nodes).tolist()]

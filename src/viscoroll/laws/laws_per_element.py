@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from ..core import Floats, Integers, ParameterError
+from ..kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
 from ..materials import Bodies, Cover, Prony, lock_array
 from .cover_rows import cover_rows
-from .law_rows import refuse_distant_times
 from .law_table import OCTAVES, make_table, tables_of_octave
 from .row_layout import AxisRows, align_vector, allocate_rows, pack_axis, pack_materials
 
@@ -70,11 +70,7 @@ def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
     octaves = np.flatnonzero(np.bincount(_exponents(alpha) - 1))
     with _lock:
         for octave in octaves[_octave_table[octaves, -1] == 0].tolist():
-            tables = tables_of_octave(octave)
-            axis = pack_axis(
-                [table.record for table in tables], np.array([table.T_mean for table in tables])
-            )
-            _octaves[octave] = axis
+            _octaves[octave] = axis = pack_axis(tables_of_octave(octave))
             _octave_table[octave] = axis.numbers.ctypes.data, axis.starts.ctypes.data, axis.rows
     # a record holds one element at a time: it has room for the rows of any of these octaves
     row_count = int(_octave_table[octaves, -1].max())
@@ -142,16 +138,15 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     from ..kernels.law import material_series, z_grid
 
     blocks = list(materials.blocks(used))
-    most_modes = max((block.modes.a.shape[-1] for block in blocks), default=0)
+    # numbers of modes ascend
+    most_modes = blocks[-1].modes.a.shape[-1]
     numbers = np.zeros((used.size, z_grid.SERIES_START + material_series.series_size(most_modes)))
     for block in blocks:
-        if block.modes.a.shape[-1]:
-            refuse_distant_times(block.modes.b.min(), block.modes.a.max())
         packed = pack_materials(block)
         numbers[block.rows, : packed.shape[1]] = packed
     # columns of pack_materials: the number of rows follows e0, alpha is the first
-    row_count = int(numbers[:, z_grid.FIRST_EXPONENT + 1].max(initial=1.0))
-    nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max(initial=1.0)))
+    row_count = int(numbers[:, z_grid.FIRST_EXPONENT + 1].max())
+    nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max()))
     workspace = np.empty(material_series.workspace_size(most_modes))
     return _lazy_record(
         z_grid,
@@ -166,7 +161,7 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
         node_versions=np.zeros(nodes // material_series.LANES, np.int64),
         workspace=workspace,
         workspace_size=workspace.size,
-        unlike=any(block.weights is not None for block in blocks),
+        unlike=isinstance(materials, Bodies),
     )
 
 
@@ -175,7 +170,6 @@ def _lazy_record(
     select: Any,
     row_count: int,
     e0: int = 0,
-    cover_rows: Floats | None = None,
     kept: Any = None,
     **fields: Any,
 ) -> Any:
@@ -185,15 +179,15 @@ def _lazy_record(
         addresses of arrays that both kernels read.
     select: kernel (index of an element, address of the SOURCE record) that makes the law of that
         element the current one.
-    rows, marks: numbers and marks of the record (:func:`.row_layout.allocate_rows`), which the
-        kernels write.
-    cover_rows: array for the numbers that covers have in addition, which the kernels write; None
-        for half-spaces.
+    row_count: number of rows of the record (:func:`.row_layout.allocate_rows`), whose numbers and
+        marks the kernels write.
+    e0: exponent of the end of the first row; 0 where a kernel writes it.
     kept: any objects that own memory whose addresses are among the fields, and that must live as
         long as the record;
         None: there are none.
     fields: the other fields of SOURCE by name, numbers or arrays; of an array the address is
-        passed, and the array is kept alive.
+        passed, and the array is kept alive.  ``cover_rows``, of covers alone, is the array for the
+        numbers that they have in addition, which the kernels write.
     Returns :class:`.law_record.Law`, without rows of N.  Its arrays are read-only views,
     which the kernels change through their addresses.
     """
@@ -202,9 +196,7 @@ def _lazy_record(
 
     rows, marks = allocate_rows(row_count)
     marks[E0] = e0
-    fields |= {"rows": rows, "marks": marks} | (
-        {} if cover_rows is None else {"cover_rows": cover_rows}
-    )
+    fields |= {"rows": rows, "marks": marks}
     source = np.zeros(1, kernels.SOURCE)
     for name, value in fields.items():
         source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
@@ -215,16 +207,14 @@ def _lazy_record(
     selector, maker = (
         function_address(kernel, kernels.SOURCE) for kernel in (select, kernels.make_part)
     )
-    rows, marks, N_rows = map(lock_array, (rows.view(), np.asarray(owner), np.empty(0)))
-    cover_rows = None if cover_rows is None else lock_array(cover_rows.view())
     return Law(
-        rows=rows,
-        marks=marks,
-        N_rows=N_rows,
+        rows=lock_array(rows.view()),
+        marks=lock_array(np.asarray(owner)),
+        N_rows=lock_array(np.empty(0)),
         selector=selector,
         maker=maker,
         source=int(source.ctypes.data),
-        cover_rows=cover_rows,
+        cover_rows=lock_array(fields["cover_rows"].view()) if "cover_rows" in fields else None,
     )
 
 
@@ -242,17 +232,10 @@ def count_laws(covers: Cover) -> int:
     if not covers.shape:
         return 1
     return (
-        np.unique(_octave_of(covers.thickness)).size
+        np.unique(np.floor(np.log2(covers.thickness))).size
         * _THICKNESS_NODES
         * (_NU_NODES if np.ndim(covers.nu) else 1)
     )
-
-
-def _octave_of(thickness: Floats) -> Floats:
-    """Return the exponent n, a float, of the octave [2^n, 2^(n + 1)) that contains each
-    ``thickness`` > 0, divided by l0.
-    """
-    return np.floor(np.log2(thickness))
 
 
 def _record_of_covers(covers: Cover, index: Integers) -> Any:
@@ -269,9 +252,11 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     from ..kernels.law import thickness_rows
     from ..kernels.law.law_record import E0, ROW_COUNT
 
-    octave = _octave_of(covers.thickness)
+    # octaves [2^n, 2^(n + 1)) that contain the thicknesses
+    place = np.log2(covers.thickness)
+    octave = np.floor(place)
     many_nu = np.ndim(covers.nu) > 0
-    weights = _node_weights(np.log2(covers.thickness) - octave, _THICKNESS_NODES)
+    weights = _node_weights(place - octave, _THICKNESS_NODES)
     laws = {}
     if many_nu:
         of_nu = _node_weights(np.log(3.0 - 4.0 * covers.nu) / math.log(3.0), _NU_NODES)
@@ -296,15 +281,16 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
                 raise ParameterError("thickness/l0", f"{thin:.6g}", reason) from error
     # for each cover the address of the laws of its octave and their number of rows
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
-    records = [record for _, record in laws.values()]
+    # laws of the thickest octave have the most rows
+    _, thickest = laws[octave.max()]
     return _lazy_record(
         thickness_rows,
         thickness_rows.select_cover,
-        max(record.marks[ROW_COUNT] for record in records),
-        e0=records[0].marks[E0],
+        thickest.marks[ROW_COUNT],
+        e0=thickest.marks[E0],
         cover_index=index,
         state_count=index.size,
-        cover_rows=align_vector(np.zeros(max(record.cover_rows.size for record in records))),
+        cover_rows=align_vector(np.zeros(thickest.cover_rows.size)),
         cover_count=len(weights),
         weights=np.ascontiguousarray(weights),
         law_count=weights.shape[1],
@@ -322,8 +308,6 @@ def _node_weights(x: Floats, count: int) -> Floats:
     count: number of nodes, the Chebyshev points of [0, 1].
     Returns the weights, of either sign, (points, nodes); their sum over the nodes is 1.
     """
-    from ..kernels.numerics.interpolation import to_chebyshev
-
     return np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, count - 1) @ to_chebyshev(count)
 
 
@@ -343,15 +327,11 @@ def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
     rows and e0, equal for all, are read.
     Raises ParameterError for a cover at a node that is too thin.
     """
-    from ..kernels.numerics.interpolation import chebyshev, to_doubles
-
-    ratios = (
-        0.75 - 0.25 * 3.0 ** (0.5 + 0.5 * to_doubles(chebyshev(_NU_NODES)))
-        if many_nu
-        else np.array([thinnest.nu])
-    )
+    ratios = [thinnest.nu]
+    if many_nu:
+        ratios = (0.75 - 0.25 * 3.0 ** (0.5 + 0.5 * to_doubles(chebyshev(_NU_NODES)))).tolist()
     numbers = []
-    for nu in ratios.tolist():
+    for nu in ratios:
         for node in to_doubles(chebyshev(_THICKNESS_NODES)).tolist():
             cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * node), nu)
             # the upper end of the octave determines the number of rows, so that all have as many

@@ -28,34 +28,25 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Floats, Integers
-from ..materials import Block, lock_array
-from .law_rows import SHORT_TERMS, TERMS, Rows, modes_record, row_range
+from ..kernels.numerics.interpolation import powers_of_chebyshev, to_chebyshev
+from ..materials import AXIS, COVER, KINDS, LAW, Block, lock_array
+from .law_rows import SHORT_TERMS, TERMS, Rows, modes_record, refuse_distant_times, row_range
 
-#: functions of a table in their order: the first five depend on u = kappa |V|, the others on v =
-#: 1/F(eta)
-FUNCTIONS = ("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
-#: functions that only covers have (:mod:`.cover_law`): L = 2 kappa delta_star/mu; f,
-#: whose sum over both bodies is 2 kappa delta_f; g, whose sum is 2 kappa (delta_0* - delta_f);
-#: slopes of lam and epsilon in Q
-COVER_FUNCTIONS = (
-    "limit",
-    "free_half_space",
-    "free_cylinder",
-    "excess_half_space",
-    "excess_cylinder",
-    "lam_Q",
-    "epsilon_Q",
-)
-#: functions of a cover with limits for u -> infinity: lam and these
-_LIMITED = 1 + len(COVER_FUNCTIONS)
+#: functions of a table in their order, lam, epsilon, m_half_space, m_cylinder, N, share and press:
+#: the first five depend on u = kappa |V|, the others on v = 1/F(eta)
+FUNCTIONS = tuple(KINDS[LAW].functions)
+#: column of N
+N_COLUMN = FUNCTIONS.index("N")
 #: columns of the functions of steady rolling, all but N
-STEADY = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
-#: functions of a table over alpha in their order; m is M/V of both bodies, which are alike
-AXIS_FUNCTIONS = ("lam", "epsilon", "m", "N", "share", "press")
-#: columns of a table that those are taken from
-_AXIS_COLUMNS = [
-    FUNCTIONS.index(name) for name in ("lam", "epsilon", "m_half_space", "N", "share", "press")
-]
+STEADY = np.delete(np.arange(len(FUNCTIONS)), N_COLUMN)
+#: functions that only covers have (:mod:`.cover_law`), in the file after those of steady rolling:
+#: limit, L = 2 kappa delta_star/mu; free_half_space and free_cylinder, f, whose sum is 2 kappa
+#: delta_f; excess_half_space and excess_cylinder, g, whose sum is 2 kappa (delta_0* - delta_f);
+#: lam_Q and epsilon_Q, slopes of lam and epsilon in Q
+COVER_FUNCTIONS = tuple(KINDS[COVER].functions)[STEADY.size :]
+#: functions of a table over alpha in their order, lam, epsilon, m, N, share and press; m is M/V of
+#: both bodies, which are alike
+AXIS_FUNCTIONS = tuple(KINDS[AXIS].functions)
 #: functions of a table over alpha that are divided by c = (alpha - 1)/alpha, as their limits for
 #: alpha -> 1 are then finite
 _DIVIDED_BY_C = [AXIS_FUNCTIONS.index(name) for name in ("epsilon", "m", "N")]
@@ -69,7 +60,8 @@ _NEGLIGIBLE = 4e-17
 _NEGLIGIBLE_SLOPE = 4e-16
 #: L and H/F^2, the functions with that bound, among L, m, lam, epsilon, H/F^2 and eta/F
 _FUNCTIONS_WITH_SLOPES = [0, 4]
-#: column of M/V of the half-space in a table over alpha
+#: column of M/V in a table over alpha, and of that of the half-space in a table, where that of the
+#: cylinder follows
 _AXIS_M = AXIS_FUNCTIONS.index("m")
 
 
@@ -133,7 +125,7 @@ def to_axis(table: Floats, c: Floats) -> Floats:
     epsilon, M/V and N are divided by c, and M/V is twice that of the half-space, as both bodies are
     alike; lam, share and press are copied.
     """
-    columns = table[..., _AXIS_COLUMNS]
+    columns = np.delete(table, _AXIS_M + 1, axis=-1)
     columns[..., _AXIS_M] *= 2.0
     columns[..., _DIVIDED_BY_C] /= c
     return columns
@@ -150,9 +142,7 @@ def from_axis(columns: Floats, c: float) -> Floats:
     """
     columns[..., _DIVIDED_BY_C] *= c
     columns[..., _AXIS_M] *= 0.5
-    return columns[
-        ..., [AXIS_FUNCTIONS.index(name if name in AXIS_FUNCTIONS else "m") for name in FUNCTIONS]
-    ]
+    return np.insert(columns, _AXIS_M, columns[..., _AXIS_M], axis=-1)
 
 
 def interleave_pairs(a: Floats, b: Floats) -> Floats:
@@ -164,8 +154,21 @@ def interleave_pairs(a: Floats, b: Floats) -> Floats:
     a, b: coefficients, (rows, powers) each, of one shape, with an even number of powers.
     Returns a new array (rows, 2 * powers).
     """
-    both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
-    return both.reshape(len(a), -1)
+    return _interleave(np.stack([a, b], axis=1), 2)
+
+
+def _interleave(functions: Floats, paired: int) -> Floats:
+    """Return functions in the order of a row: pairs as in :func:`interleave_pairs`, then single
+    functions.
+
+    functions: coefficients, (..., functions, powers), with an even number of powers.
+    paired: number of functions that are in pairs, the first ones, even.
+    Returns a new array (..., functions * powers).
+    """
+    front = functions.shape[:-2]
+    pairs = functions[..., :paired, :].reshape(*front, paired // 2, 2, -1, 2).swapaxes(-3, -2)
+    parts = pairs, functions[..., paired:, :]
+    return np.concatenate([part.reshape(*front, -1) for part in parts], axis=-1)
 
 
 def align_vector(numbers: Floats) -> Floats:
@@ -198,40 +201,34 @@ def allocate_rows(count: int) -> tuple[Floats, Integers]:
     return align_vector(np.zeros((count + 1) * ROW_SIZE)), marks
 
 
-def pack_record(
-    table: Floats, e0: int, alpha: float, fast_limit: Floats, cover: CoverRows | None
-) -> Any:
+def pack_record(law: Any) -> Any:
     """Return the record of a law of steady rolling that kernels read, with all its rows computed.
 
     In contrast to the records of :mod:`.laws_per_element`, whose rows kernels compute where they
     read them, it can be shared by threads.
-    table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of
-        :data:`FUNCTIONS`; the column of N is not read.
-    e0: exponent of the end of the first row, which is [0, 2^e0).
-    alpha: instantaneous divided by long-time stiffness, >= 1; ignored with a ``cover``.
-    fast_limit: W and C of the fast limit (module docstring), of both bodies together, of the
-        half-space and of the cylinder, (3, 2); ignored with a ``cover``, whose ``limits`` take
-        their place.
-    cover: rows of a cover of finite thickness, as :class:`CoverRows`; None for half-spaces.
+    law: :class:`.law_table.LawTable`; the column of N is not read, and of a cover, whose ``limits``
+        take their place, neither alpha nor ``fast_limit``.
     Returns a :class:`.law_record.Law` with read-only arrays.  ``N_rows`` is empty, as N
     is packed by :func:`pack_unsteady`; ``selector``, ``maker`` and ``source`` are 0, since no row
-    is left to be made; ``cover_rows`` is None for half-spaces.
+    is left to be made; ``cover_rows`` is None for half-spaces, ``table`` but for a table of the
+    coupled solution.
     """
     from ..kernels.law.law_record import E0, ROW_COUNT, ROW_SIZE, Law
 
-    count = len(table)
+    table = law.steady_coefficients
     # the limits for u -> infinity of H/F^2, alpha, and of lam, then the fast limit
-    front = np.append([alpha, 1.0 / math.sqrt(alpha)], fast_limit)
+    front = np.append([law.alpha, 1.0 / math.sqrt(law.alpha)], law.fast_limit)
     L = None
     cover_rows = None
-    if cover is not None:
-        front = _pack_cover_front(cover)
-        cover_rows = lock_array(_pack_cover(cover))
-        L = cover.creep[0]
-    rows, marks = allocate_rows(count)
+    if law.cover is not None:
+        front = _pack_cover_front(law.cover)
+        cover_rows = lock_array(_pack_cover(law.cover))
+        L = law.cover.creep[0]
+    rows, marks = allocate_rows(len(table))
     rows[: front.size] = front
-    rows[ROW_SIZE:] = _pack_rows(table, e0, alpha=front[0], fast=front[2:4], cover_L=L).ravel()
-    marks[[ROW_COUNT, E0]] = count, e0
+    functions = _row_functions(table, law.e0, alpha=front[0], fast=front[2:4], cover_L=L)
+    rows[ROW_SIZE:] = _interleave(functions, 6).ravel()
+    marks[[ROW_COUNT, E0]] = len(table), law.e0
     return Law(
         rows=lock_array(rows),
         marks=lock_array(marks),
@@ -240,13 +237,14 @@ def pack_record(
         maker=0,
         source=0,
         cover_rows=cover_rows,
+        table=None if law.coupled is None else law.coupled.vector,
     )
 
 
-def _pack_rows(
-    table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floats | None
+def _row_functions(
+    table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floats | None = None
 ) -> Floats:
-    """Return the rows of a record in the order in which kernels read them
+    """Return the functions of the rows of a record in the order in which kernels read them
     (:mod:`.law_functions`).
 
     L is not taken from the table: two steps of Newton's method from lam (1 + epsilon), or from
@@ -261,9 +259,8 @@ def _pack_rows(
         factor of 1/u in L.
     cover_L: rows of L = 2 kappa delta_star/mu of a cover, (rows, 24 powers); None: L = lam (1 +
         epsilon).
-    Returns (rows, 192): 48 numbers of L and M/V of both bodies together, interleaved
-    (:func:`interleave_pairs`), 48 of lam and epsilon, 48 of M/V of half-space and cylinder; then 24
-    each of H/F^2 and eta/F.
+    Returns (rows, 8 functions, 24 powers): L and M/V of both bodies together, lam and epsilon, M/V
+    of half-space and cylinder, three pairs in a row; then H/F^2 and eta/F.
     """
     rows = Rows(e0, len(table))
     lam, epsilon, half_space, cylinder, _, share, press = np.moveaxis(table, -1, 0)
@@ -272,7 +269,6 @@ def _pack_rows(
     L = lam_at * (1.0 + epsilon_at) if cover_L is None else rows.read(cover_L[None], u)[0][0]
     for _ in range(2):
         value, slope = _read_press(rows, press, v=2.0 * u / L, alpha=alpha, fast=fast)
-        # Newton's method for L^2 press(2 u/L) = 1
         # Newton's step for L^2 press(2 u/L) - 1, whose slope over L is 2 L A; dL, the slope of its
         # root over ln u, follows from the same equation
         A = value - 0.5 * slope
@@ -281,8 +277,8 @@ def _pack_rows(
     lengths = rows.fit_slopes(L.reshape(rows.x.shape), dL.reshape(rows.x.shape))
     # L at rest: l0 itself on half-spaces
     lengths[0, 0] = 1.0 if cover_L is None else cover_L[0, 0]
-    pairs = (lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder)
-    return np.concatenate([*(interleave_pairs(*pair) for pair in pairs), press, share], axis=1)
+    pairs = [lengths, half_space + cylinder, lam, epsilon, half_space, cylinder]
+    return np.stack([*pairs, press, share], axis=1)
 
 
 def _read_press(
@@ -298,14 +294,12 @@ def _read_press(
     fast: W and C of the fast limit, (2,).
     Returns (values, derivatives), (n,) each, dimensionless.
     """
-    # the last double within the rows, beyond which they cannot be read
-    last = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
-    (value,), (slope,) = rows.read(press[None], last)
+    (value,), (slope,) = rows.read(press[None], np.minimum(v, rows.last))
     bracket = fast[1] + fast[0] * np.log(v)
     share = 1.0 - 0.5 * alpha * bracket / v
     # 2 alpha times the slope of eta/F, as H/F^2 = alpha (eta/F)^2 beyond the rows
     share_slope = alpha**2 * (bracket - fast[0]) / v
-    beyond = v > last
+    beyond = v > rows.last
     return np.where(beyond, alpha * share**2, value), np.where(beyond, share_slope * share, slope)
 
 
@@ -328,7 +322,7 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     the interval beyond the last row; then, for each row, the integral from u = 0 to its origin, and
     that from 0 to infinity.
     """
-    N = table[..., FUNCTIONS.index("N")]
+    N = table[..., N_COLUMN]
     du_dt = np.ldexp(0.25, e0 + np.arange(len(N)))
     # du/dt of an octave is a quarter of its end, of the first row its whole end; the highest power
     # of the integral would be one too many and is dropped
@@ -350,8 +344,8 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     # its last but one entry, up to the end of the last row, belongs to no origin and is deleted
     # below
     from_rest[:-2] -= to_begin
-    pairs = np.stack([N, integral], axis=1).reshape(len(N), 2, -1, 2).swapaxes(1, 2)
-    return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
+    pairs = interleave_pairs(N, integral).ravel()
+    return np.concatenate([pairs, from_top, np.delete(from_rest, -2)])
 
 
 def _pack_cover_front(cover: CoverRows) -> Floats:
@@ -364,8 +358,8 @@ def _pack_cover_front(cover: CoverRows) -> Floats:
     Returns shape (8,), in place of alpha, lam, and W and C of both bodies, of the half-space and of
     the cylinder: 1/L_1^2, L_1, 0, 4 L_1 a; then 0, 8 b for each body.
     """
-    # the limit of L and, after the eight limits, its factor of 1/u
-    L, L_slope = cover.limits[[0, _LIMITED]]
+    # the limit of L and, after the limits of lam and of the other functions, its factor of 1/u
+    L, L_slope = cover.limits[[0, 1 + len(COVER_FUNCTIONS)]]
     half_space, cylinder = cover.limits[-2:]
     return np.array(
         [1.0 / (L * L), L, 0.0, 4.0 * L_slope, 0.0, 8.0 * half_space, 0.0, 8.0 * cylinder]
@@ -384,18 +378,19 @@ def _pack_cover(cover: CoverRows) -> Floats:
     """
     from ..kernels.law.cover_law import COVER_FRONT_SIZE, CYLINDER_PART
 
-    limits, slopes = cover.limits[: 2 * _LIMITED].reshape(2, _LIMITED)
-    L, lam, L_slope, lam_slope = *limits[:2], *slopes[:2]
+    # each limit with its factor of 1/u
+    limits = cover.limits[:-3].reshape(2, -1).T
+    (L, L_slope), (lam, lam_slope) = limits[:2]
     # eta/F for v -> infinity and its factor of 1/v, with 1/u = 2/(L v)
     share = lam / L, 2.0 * (lam_slope * L - lam * L_slope) / L**3
-    _, free_base, free, excess_base, excess, *tilts = cover.creep
+    _, free_base, free, excess_base, excess, *tilts = cover.creep[..., :SHORT_TERMS]
     # a body without a layer has f = 0 at all speeds; -1: both have one, and kernels read the
     # cylinder's
     on_base = free_base.any()
     part = -1.0 if on_base and free.any() else float(not on_base)
     front = [
-        # each limit with its factor of 1/u; L is in the head of the rows (_pack_cover_front)
-        *np.stack([limits, slopes], axis=1)[1:].ravel(),
+        # L is in the head of the rows (_pack_cover_front)
+        *limits[1:].ravel(),
         *share,
         cover.limits[-3],
         # 2 M u^2/(V L), the form in which kernels take the moment of both bodies
@@ -403,10 +398,8 @@ def _pack_cover(cover: CoverRows) -> Floats:
         part,
         *np.zeros(COVER_FRONT_SIZE - CYLINDER_PART - 1),
     ]
-    total = free_base + free, excess_base + excess
-    short = [function[:, :SHORT_TERMS] for function in (*total, free, excess, *tilts)]
-    pairs = (interleave_pairs(*short[n : n + 2]) for n in (0, 2, 4))
-    return align_vector(np.append(front, np.concatenate([*pairs], axis=1)))
+    functions = [free_base + free, excess_base + excess, free, excess, *tilts]
+    return align_vector(np.append(front, _interleave(np.stack(functions, axis=1), len(functions))))
 
 
 class AxisRows(NamedTuple):
@@ -428,45 +421,36 @@ class AxisRows(NamedTuple):
     rows: int
 
 
-def pack_axis(records: list[Any], c: Floats) -> AxisRows:
+def pack_axis(tables: list[Any]) -> AxisRows:
     """Interpolate the coefficients of 16 laws over alpha, and pack the result for the kernels of an
     alpha each.
 
     The interpolation is by Chebyshev polynomials in s in [-1, 1], the place of alpha in its octave;
     the kernels are those of :mod:`.alpha_axis`.
-    records: records of the laws of standard linear solids (:func:`pack_record`) at the 16 Chebyshev
-        nodes of s, in the order of :func:`.interpolation.chebyshev`, with equal
-        numbers of rows.
-    c: (alpha - 1)/alpha of each, > 0, (16,), by which M/V and epsilon are divided.
+    tables: laws of standard linear solids (:class:`.law_table.LawTable`) at the 16 Chebyshev nodes
+        of s, in the order of :func:`.interpolation.chebyshev`, with equal numbers of rows.
     Returns :class:`AxisRows`: ``numbers``, the terms of these polynomials, in groups of four;
     ``starts``, the index of the first group of each function or pair of each row; ``rows``, their
     number.
     Groups of high degrees are left out where all blocks of the function need no more than
     :data:`.alpha_axis.SHORT` states; else all four groups of all its blocks are
-    kept.  M/V of half-space and cylinder are not packed: each is half of M/V.
+    kept.  M/V and epsilon are divided by (alpha - 1)/alpha, which is ``T_mean`` of these laws.  M/V
+    of half-space and cylinder are not packed: each is half of M/V.
     """
-    from ..kernels.law.alpha_axis import ALPHA_TERMS, BLOCK_SIZE, FULL, GROUP, SHORT
-    from ..kernels.law.law_record import BODY_MOMENTS, H_OVER_F2, PART_SIZE, ROW_SIZE
+    from ..kernels.law.alpha_axis import BLOCK_SIZE, FULL, GROUP, SHORT
 
-    values = np.array([record.rows[ROW_SIZE:].reshape(-1, ROW_SIZE) for record in records])
-    nodes, rows = values.shape[:2]
-    # a pair stores two powers of one function, then of the other: its functions are taken apart
-    pairs = values[..., :BODY_MOMENTS].reshape(nodes, rows, 2, PART_SIZE // 2, 2, 2).swapaxes(3, 4)
-    pairs = pairs.reshape(nodes, rows, 4, PART_SIZE)
-    # the second function of each pair is M/V or epsilon, which go to 0 with c
-    pairs[:, :, 1::2] /= c[:, None, None, None]
-    singles = values[..., H_OVER_F2:].reshape(nodes, rows, 2, PART_SIZE)
-    terms = _significant_terms(np.concatenate([pairs, singles], axis=2))
-    # interleaved again, as kernels evaluate pairs
-    pairs = terms[:, :, :4].reshape(ALPHA_TERMS, rows, 2, 2, PART_SIZE // 2, 2).swapaxes(3, 4)
-    terms = np.concatenate(
-        [pairs.reshape(ALPHA_TERMS, rows, 4, PART_SIZE), terms[:, :, 4:]], axis=2
-    )
-    terms = _grouped_terms(terms)
-    groups = np.moveaxis(terms.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE), 0, 2)
-    groups = np.moveaxis(groups, (1, 3, 2), (0, 1, 2))[
-        :, :, ::-1
-    ]  # (rows, blocks, groups, terms, numbers)
+    functions = [
+        _row_functions(table.steady_coefficients, table.e0, table.alpha, table.fast_limit[0])
+        for table in tables
+    ]
+    # L, M/V, lam, epsilon, H/F^2 and eta/F, without M/V of the bodies
+    values = np.ascontiguousarray(np.delete(functions, [4, 5], axis=2))
+    rows = values.shape[1]
+    # M/V and epsilon go to 0 with c = (alpha - 1)/alpha
+    values[:, :, 1:4:2] /= np.array([table.T_mean for table in tables])[:, None, None, None]
+    terms = _grouped_terms(_interleave(_significant_terms(values), 4))
+    # (rows, blocks, groups, terms, numbers), groups of the highest degrees first
+    groups = terms.reshape(FULL, GROUP, rows, -1, BLOCK_SIZE).transpose(2, 3, 0, 1, 4)[:, :, ::-1]
     numbers = []
     counts = []
     for row in groups:
@@ -527,19 +511,15 @@ def _significant_terms(values: Floats) -> Floats:
     """
     from numpy.polynomial.chebyshev import poly2cheb
 
-    from ..kernels.numerics.interpolation import powers_of_chebyshev, to_chebyshev
-
-    nodes = len(values)
     count = values.shape[-1]
     ends = values @ np.array(
         [[(-1.0) ** k, k == 0, 1.0] for k in range(count)]
     )  # values at t = -1, 0 and 1
     least = np.abs(ends).min(axis=(0, 3))
-    terms = np.einsum("jk,k...->j...", to_chebyshev(nodes), values)
-    units = [[0.0] * k + [1.0] for k in range(count)]
+    terms = np.einsum("jk,k...->j...", to_chebyshev(len(values)), values)
     # from powers to Chebyshev polynomials exactly: an inverse matrix would lose eight digits
     to_terms = np.array(
-        [np.pad(poly2cheb(power), (0, count - 1 - k)) for k, power in enumerate(units)]
+        [np.pad(poly2cheb(unit), (0, count - 1 - k)) for k, unit in enumerate(np.eye(count))]
     )
     of_both = terms[:, 1:] @ to_terms
     allowed = np.full(values.shape[2:], _NEGLIGIBLE)
@@ -571,11 +551,11 @@ def pack_materials(block: Block) -> Floats:
     cylinder; e0, number of rows, number of modes (0, 1 and 0 for elastic ones); then the vectors a,
     b, e, t and weights and the matrix Q of the modes, as in :func:`.law_rows.modes_record`.  Times
     are in units of T_ref.
+    Raises ParameterError for times beyond 1e-100 to 1e100 times T_ref.
     """
     modes = block.modes
     count = block.rows.size
     weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights
-    alpha = np.broadcast_to(modes.alpha, count)
     W = modes.J * modes.b
     C = W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
     sums = [
@@ -586,8 +566,9 @@ def pack_materials(block: Block) -> Floats:
     rows = np.ones(count)
     # elastic ones: one row from e0 = 0, without modes
     mode_count = np.full(count, modes.a.shape[-1])
-    if modes.a.shape[-1]:
+    if modes.a.size:
+        refuse_distant_times(modes.b.min(), modes.a.max())
         e0, rows = row_range(modes.b[:, 0], modes.a[:, -1])
     *vectors, Q = modes_record(modes, weights)
-    front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, e0, rows, mode_count]
+    front = [modes.alpha, 1.0 / np.sqrt(modes.alpha), *sums, *means, e0, rows, mode_count]
     return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)

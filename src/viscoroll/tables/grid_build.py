@@ -8,14 +8,12 @@ moment, and its parts M_half_space and M_cylinder; delta_star, creepage at which
 delta_0, creepage without creep force; zeta, time in which a point passes half the contact.
 """
 
-from __future__ import annotations
-
 import math
 import shlex
 import sys
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -37,7 +35,7 @@ from ..core import (
     describe_value,
     described_error,
 )
-from ..laws import LawTable, bodies_as_toml, law_as_dataset, parse_law
+from ..laws import LawTable, bodies_as_toml, increases, law_as_dataset, parse_law
 from ..materials import HIGHEST_ALPHA, dataset_content
 from ..rollers import Cylinder, Scene
 from .table_files import (
@@ -51,10 +49,6 @@ from .table_files import (
     axes_of,
     fields_of,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- Nodes of the axes of a grid ---
 
@@ -155,9 +149,10 @@ def creep_nodes(
         raise ParameterError("count", count, "odd, as the nodes are symmetric about 0")
     roller = roller_of(what, alpha)
     speeds = increasing("V", V, unit=roller.scale, above=0.0)
-    roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
-    # all pairs of speed and alpha
-    speeds = speeds if alpha is None else speeds[:, np.newaxis]
+    if alpha is not None:
+        # all pairs of speed and alpha
+        roller = roller.replace(alpha=increasing("alpha", alpha, low=1.0))
+        speeds = speeds[:, np.newaxis]
     found = roller.contact(speeds, delta=0.0, fields=("delta_minus", "delta_plus"))
     largest = np.maximum(np.abs(found.delta_minus), np.abs(found.delta_plus))
     ends = np.sort(_END_RATIO * largest, axis=None)
@@ -167,8 +162,8 @@ def creep_nodes(
     density = (1.0 / ends[-1] + np.cumsum(1.0 / ends[::-1])[::-1] / ends.size) / 2.0
     # part of the nodes up to each end, and in its inverse the nodes at equal parts
     fraction = np.append(0.0, np.cumsum(density * np.diff(ends, prepend=0.0)))
-    places = np.append(0.0, ends)
-    half = np.interp(np.linspace(0.0, fraction[-1], count // 2 + 1), fraction, places)
+    parts = np.linspace(0.0, fraction[-1], count // 2 + 1)
+    half = np.interp(parts, fraction, np.append(0.0, ends))
     return np.concatenate([-half[:0:-1], half])  # the mirror image, without a second 0
 
 
@@ -193,9 +188,11 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
             "a Scene, a Cylinder or the law of half-spaces; if a body is a layer, the Cylinder",
         )
     if shape := what.scene().shape:
-        found = f"has arrays of shape {shape} as parameters"
-        allowed = "a Scene or Cylinder whose parameters are numbers: make a grid for each element"
-        raise described_error("what, the roller,", found, allowed)
+        raise described_error(
+            "what, the roller,",
+            f"has arrays of shape {shape} as parameters",
+            "a Scene or Cylinder whose parameters are numbers: make a grid for each element",
+        )
     if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
         raise described_error(
             "alpha", "is given", "left out beside a Cylinder or a material, which determines it"
@@ -216,11 +213,11 @@ def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     Returns a copy of the nodes, (n,), n >= 1, strictly increasing, in the unit of ``bounds``.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
-    if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
-        found = "does not increase strictly" if axis.size else "is empty"
-        found = found if axis.ndim == 1 else f"has shape {axis.shape}"
-        raise described_error(name, found, "a number, or a list of increasing numbers")
-    return axis
+    if axis.ndim == 1 and axis.size and increases(axis):
+        return axis
+    found = "does not increase strictly" if axis.size else "is empty"
+    found = found if axis.ndim == 1 else f"has shape {axis.shape}"
+    raise described_error(name, found, "a number, or a list of increasing numbers")
 
 
 # --- The contact law on a grid, for look-up blocks of other programs ---
@@ -252,7 +249,7 @@ COMMENT = (
 )
 
 
-def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
+def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> Any:
     """Make a variable of a grid, with long_name, units, symbol, range, equation and reference as
     attributes.
 
@@ -261,7 +258,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
     values: array of its values, over ``dims``.
     si: whether the values are in SI units, else dimensionless; the range of Q is then that of "mu
     P" in place of "mu".
-    Returns the variable, float64.
+    Returns the xarray.Variable, float64.
     Raises KeyError for another name, ValueError of xarray where ``values`` have another number of
     axes than ``dims``.
     """
@@ -276,7 +273,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
         "equation": symbol.equation,
         "reference": PAPER,
     }
-    return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes(name, si) | about)
+    return xr.Variable(dims, values, attributes(name, si) | about)
 
 
 def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
@@ -289,13 +286,12 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
     and the command), references, comment, viscoroll_table ("grid"), schema_version,
     viscoroll_version and grid.
     """
-    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {
         "Conventions": "CF-1.11",
         "title": title,
         "institution": "made by its user with the open-source package viscoroll",
         "source": f"viscoroll {__version__}: the contact law, Eqs. (6), (8)-(10), (15), (16)",
-        "history": f"{now} {command or shlex.join(sys.orig_argv)}",
+        "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {command or shlex.join(sys.orig_argv)}",
         "references": PAPER,
         "comment": COMMENT,
         KIND: GRID,
@@ -399,7 +395,12 @@ def build(
                 raise described_error(
                     name, "is given", "left out, as the method 'coupled' chooses its own nodes"
                 )
-        return _coupled_dataset(roller_of(what, None), nodes, progress)
+        roller = roller_of(what, None)
+        law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
+        if isinstance(roller, Cylinder):
+            # so that the file states its unit of time in s, and the bodies in SI units
+            law = replace(law, T_ref=roller.T_ref, pair=roller.pair)
+        return law_as_dataset(law, {})
     for name, given in {"V": V, "delta": delta}.items():
         if given is None:
             raise ParameterError(
@@ -425,8 +426,9 @@ def build(
         for name, values in _evaluate_nodes(what, axes, method).items()
     }
     coordinates = {name: variable(name, (name,), axis, si) for name, axis in axes.items()}
-    units = "in SI units, per m of length" if si else "dimensionless"
-    title = f"Contact of a viscoelastic cylinder rolling with partial slip, {units}"
+    title = "Contact of a viscoelastic cylinder rolling with partial slip, " + (
+        "in SI units, per m of length" if si else "dimensionless"
+    )
     grid = ", ".join(
         f"{name} {axis.size} in [{axis[0]:g}, {axis[-1]:g}]" for name, axis in axes.items()
     )
@@ -445,22 +447,6 @@ def build(
     return table
 
 
-def _coupled_dataset(
-    roller: Scene | Cylinder, nodes: tuple[int, int] | None, progress: bool
-) -> Dataset:
-    """Return the table of the coupled solution of one roller as a dataset.
-
-    roller: a Scene, dimensionless, or a Cylinder, in SI units, with numbers for parameters.
-    nodes: numbers of nodes of speed and of creepage; None: those of :func:`.coupled_law`.
-    progress: whether a progress bar is drawn on standard error.
-    """
-    law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
-    if isinstance(roller, Cylinder):
-        # so that the file states its unit of time in s, and the bodies in SI units
-        law = replace(law, T_ref=roller.T_ref, pair=roller.pair)
-    return law_as_dataset(law, {})
-
-
 def _evaluate_nodes(
     roller: Scene | Cylinder, axes: dict[str, Floats], method: str
 ) -> dict[str, Floats]:
@@ -476,15 +462,16 @@ def _evaluate_nodes(
     half-spaces by the coupled solution, delta_star and delta_0 alone.
     Raises as :func:`_evaluate`.
     """
-    grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
-    plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
-    scene = roller.scene() if isinstance(roller, Cylinder) else roller
+    grid = dict(zip(axes, np.ix_(*axes.values())))
+    # of one creepage, an array, which broadcasts too
+    plane = grid | {"delta": np.zeros(1)}
+    scene = roller.scene()
     of_traction = OF_TRACTION if scene.cover is not None or scene.tabulated else ()
     # delta_0 is 0 of half-spaces whose pressure and shear are uncoupled
     names = tuple(name for name in PLANE if name not in (of_traction or ("delta_0",)))
     fields = _evaluate(roller, plane, names, method)
     volume = _evaluate(roller, grid, (*VOLUME, *of_traction), method)
-    # the fields over the plane were computed at the one creepage 0, whose axis is the second
+    # that creepage has the second axis
     return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}
 
 
@@ -498,8 +485,8 @@ def _evaluate(
     units of the roller.
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
-    points: "V", and perhaps "delta" and "alpha" -> arrays that broadcast; without "delta" fields
-        are at delta = 0 as an array (1,), which broadcasts too; without "alpha" it is the roller's.
+    points: "V", "delta" and perhaps "alpha" -> arrays that broadcast; without "alpha" it is the
+        roller's.
     names: names of the fields, as in :func:`viscoroll.contact`.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
     Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out
@@ -507,8 +494,7 @@ def _evaluate(
     warn with ModelWarning.
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
-    creep = points.get("delta", np.zeros(1))
-    return contact(own, points["V"], delta=creep, fields=names, method=method).as_dict()
+    return contact(own, points["V"], delta=points["delta"], fields=names, method=method).as_dict()
 
 
 def _state_errors(table: Dataset, roller: Scene | Cylinder) -> None:

@@ -32,11 +32,12 @@ from ..laws import (
     AXIS_FUNCTIONS,
     COVER_FUNCTIONS,
     FUNCTIONS,
+    LawAxis,
     LawTable,
     Rows,
     evaluate_by_modes,
     law_as_dataset,
-    law_table,
+    law_axis,
     law_table_of,
     parse_axis,
     parse_law,
@@ -44,9 +45,8 @@ from ..laws import (
 )
 from ..materials import AXIS, COUPLED, COVER, KIND, LAW, dataset_content, stated_errors
 from ..rollers import Cylinder, Scene
-from . import table_files
 from .grid_build import RELATIVE_FIELDS, differences, errors_at, random_points
-from .table_files import is_law
+from .table_files import check_grid, fields_of, is_law
 
 # --- The law of one material or pair, or of every alpha ---
 
@@ -58,9 +58,6 @@ _COVER_FIELDS = "lam", "delta_star", "epsilon", "M_half_space", "M_cylinder"
 _COVER_SPEEDS = 40
 #: Terms of the pressure in that solve: half as many again as for the rows.
 _COVER_TERMS = 60
-#: Number of functions of kappa |V|, the first in FUNCTIONS; the others are functions of v =
-#: 1/F(eta).
-_SPEED_FUNCTIONS = 5
 #: Points in every octave at which errors are measured.
 _POINTS_PER_OCTAVE = 8
 #: Random alphas in every octave of alpha at which errors are measured.
@@ -128,7 +125,7 @@ def law(
     'law'
     """
     check_one_given(material=material, alpha=alpha)
-    table: LawTable | law_table.LawAxis
+    table: LawTable | LawAxis
     if alpha is not None:
         if base is not None:
             raise ParameterError("base", describe_value(base), "left out if alpha is given")
@@ -139,13 +136,13 @@ def law(
                 "a range (lowest, highest), for example (1, 4096); for a single alpha give that "
                 "number as material",
             )
-        table = law_table.law_axis(*alpha)
+        table = law_axis(*alpha)
     elif isinstance(material, Cylinder):
         pair = material.pair
-        table = law_table_of(pair if pair.covered is None else material.scene().material, base)
-        if (
-            pair.covered is not None
-        ):  # a layer, which the scene of the cylinder has in units of its l0
+        covered = pair.covered is not None
+        # of a layer that of the scene, which has the thickness in units of its l0
+        table = law_table_of(material.scene().material if covered else pair, base)
+        if covered:
             table = replace(table, T_ref=material.T_ref, pair=pair)
         if material.body_data.scene.tabulated:
             # the largest error of six decades of speed
@@ -154,7 +151,7 @@ def law(
             warn_of_model(
                 "the table has the fast law (coupled=False) in place of "
                 "the solution of pressure and shear together: "
-                + (report.bodies if pair.covered is None else report.traction).sentence
+                + (report.traction if covered else report.bodies).sentence
             )
     else:
         table = law_table_of(material, base)
@@ -162,7 +159,7 @@ def law(
 
 
 def measured_errors(
-    table: LawTable | law_table.LawAxis, count: int | None = None, seed: int = _SEED
+    table: LawTable | LawAxis, count: int = 0, seed: int = _SEED
 ) -> dict[str, float]:
     """Compare a tabulated law with exact values at random points, and return the largest error of
     each function.
@@ -185,7 +182,7 @@ def measured_errors(
         of every alpha.
     count : number of points.  Of every alpha the laws of the random alphas share it, with at least
         one point each.
-        None or 0: eight for each octave of zeta (of each alpha), or 40 speeds for a cover.
+        0: eight for each octave of zeta (of each alpha), or 40 speeds for a cover.
     seed : seed of the points and alphas, >= 0.
 
     Returns
@@ -210,13 +207,13 @@ def measured_errors(
         pair = pair_of_scene(Scene(material=table, kappa=1.0, mu=table.coupled.mu))
         return measure_errors(table.coupled, pair, count or COUPLED_POINTS, seed)
     random = np.random.default_rng(seed)
-    if isinstance(table, law_table.LawAxis):
+    if isinstance(table, LawAxis):
         octaves = len(table.rows)
         alphas = np.exp2(
             table.first + octaves * random.random(_ALPHAS_PER_OCTAVE * octaves)
         ).tolist()
         found = [
-            # at least one point each; None or 0 stays, the number by octaves
+            # at least one point each; 0 stays, the number by octaves
             measured_errors(table.at(alpha), count and 1 + count // len(alphas), seed)
             for alpha in alphas
         ]
@@ -235,27 +232,38 @@ def measured_errors(
     # H = zeta^2 (1 + 2 growth) and F = zeta (1 + shift), in closed form
     root = np.sqrt(1.0 + 2.0 * growth)
     F = 1.0 + shift
+    lam = 1.0 / root
+    share = 1.0 / F
+    press = (root / F) ** 2
     M = half_space + cylinder
-    exact = 1.0 / root, shift, half_space, cylinder, N, 1.0 / F, (root / F) ** 2
     # of a few points the largest |N| may be far below that of the law
     largest = np.abs(
         evaluate_by_modes(table.material, np.exp2(2.0 - e0 - np.arange(octaves))).N
     ).max()
-    # in the order of FUNCTIONS: lam, epsilon, both parts of M, N, share and press
-    scales = exact[0], exact[1], M, M, np.full(zeta.size, largest), exact[5], exact[6]
+    u = 0.5 / (zeta * root)
+    v = 1.0 / (zeta * F)
+    # variable, exact value and scale of each function, in the order of FUNCTIONS
+    compared = [
+        (u, lam, lam),
+        (u, shift, shift),
+        (u, half_space, M),
+        (u, cylinder, M),
+        (u, N, np.full(zeta.size, largest)),
+        (v, share, share),
+        (v, press, press),
+    ]
     errors = {}
-    for n, name in enumerate(FUNCTIONS):
-        x = 0.5 / (zeta * root) if n < _SPEED_FUNCTIONS else 1.0 / (zeta * F)
-        # before the end of the last row; where the scale is 0 the function is 0 by construction
-        inside = (x < np.ldexp(1.0, e0 + rows.count - 1)) & (scales[n] > 0.0)
+    for n, (x, exact, scale) in enumerate(compared):
+        # where the scale is 0 the function is 0 by construction
+        inside = (x <= rows.last) & (scale > 0.0)
         (found,), _ = rows.read(table.coefficients[None, ..., n], x[inside])
-        error = np.abs(found - exact[n][inside]) / scales[n][inside]
-        errors[name] = float(np.max(error, initial=0.0))
+        error = np.abs(found - exact[inside]) / scale[inside]
+        errors[FUNCTIONS[n]] = float(np.max(error, initial=0.0))
     return errors
 
 
 def _measured_errors_of_cover(
-    table: LawTable, count: int, random: np.random.Generator
+    table: Any, count: int, random: np.random.Generator
 ) -> dict[str, float]:
     """Compare the law of a layer at random speeds with solutions of the contact that have 60 terms
     of the pressure (:func:`.cover_rows.solve_at_speed`).
@@ -275,34 +283,29 @@ def _measured_errors_of_cover(
       sum of the errors of lam and L, "press" by twice the error of L.
     Raises ParameterError where a solution finds no contact length that carries the load.
     """
-    cover: Any = table.material
-    assert table.cover is not None
     slow = 0.1 / table.retardation_time.max(initial=1.0)
     fast = 10.0 / table.relaxation_time.min(initial=1.0)
     u = slow * (fast / slow) ** random.random(count)
-    # rows: lam, L, epsilon, both moments divided by u, then the functions of shear; columns: speeds
-    exact = np.array([solve_at_speed(cover, each, orders=_COVER_TERMS) for each in u.tolist()]).T
-    lam, L, epsilon, *moments = exact[: len(_COVER_FIELDS)]
-    M = u * sum(moments)
-    by_shear = exact[len(_COVER_FIELDS) :]
+    solved = [solve_at_speed(table.material, each, orders=_COVER_TERMS) for each in u.tolist()]
+    # M of both bodies divided by u
+    lam, L, epsilon, half_space, cylinder, *by_shear = np.transpose(solved)
+    M = u * (half_space + cylinder)
     # an elastic layer has one row, of constants
     if len(table.steady_coefficients) > 1:
         found = Rows(table.e0, len(table.steady_coefficients)).read(table.cover.creep[1:], u)[0]
     else:
         found = table.cover.creep[1:, 0, :1]
-    errors = dict(zip(COVER_FUNCTIONS[1:], (found - by_shear) / L, strict=True))
+    errors = dict(zip(COVER_FUNCTIONS[1:], (found - by_shear) / L))
     # at the creepage without creep force there is no traction
     free = 0.5 * (found[0] + found[1])  # kappa delta, from the parts of both bodies
     values = Contacts(table, 1.0, 1.0).fields(u, free, *_COVER_FIELDS)
     # at kappa = mu = 1 the limit L is 2 delta_star
     errors |= {"lam": values[0] / lam - 1.0, "limit": 2.0 * values[1] / L - 1.0}
-    errors["epsilon"] = np.divide(
-        values[2] - epsilon, epsilon, out=np.zeros(count), where=epsilon > 0.0
-    )
-    for name, value, moment in zip(_COVER_FIELDS[3:], values[3:], moments, strict=True):
-        errors[name.replace("M", "m")] = np.divide(
-            value - u * moment, M, out=np.zeros(count), where=M > 0.0
-        )
+    # of elastic bodies both epsilon and M are 0
+    errors["epsilon"] = (values[2] - epsilon) / np.where(epsilon > 0.0, epsilon, 1.0)
+    scale = np.where(M > 0.0, M, 1.0)
+    errors["m_half_space"] = (values[3] - u * half_space) / scale
+    errors["m_cylinder"] = (values[4] - u * cylinder) / scale
     largest = {name: float(np.abs(error).max(initial=0.0)) for name, error in errors.items()}
     return largest | {"share": largest["lam"] + largest["limit"], "press": 2.0 * largest["limit"]}
 
@@ -485,7 +488,7 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
     Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a
     cylinder or a material).
     """
-    table_files.check_grid(table, source)
+    check_grid(table, source)
     if not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
         raise FileError(
             source,
@@ -498,26 +501,23 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
     nodes = differences(table, scene)
     splines = errors_at(table, scene, random_points(table, count, seed))
     checks = []
-    for name in table_files.fields_of(table):
+    for name in fields_of(table):
         kind = "relative" if name in RELATIVE_FIELDS else "divided by the largest value"
-        checks.append(
+        # a field of zeros, as M of elastic bodies, has no such bound
+        most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
+        stated = float(table[name].attrs.get("spline_error", np.nan))
+        checks += [
             Check(
                 f"grid: {name}, nodes",
                 nodes[name],
                 NODES_ALLOWED,
                 f"{kind}; all nodes, compared with the law",
-            )
-        )
-        # a field of zeros, as M of elastic bodies, has no such bound
-        most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
-        stated = float(table[name].attrs.get("spline_error", np.nan))
-        allowed = min(SAMPLE_RATIO * stated + ROUNDING, most)
-        checks.append(
+            ),
             Check(
                 f"grid: {name}, splines",
                 float(np.max(splines[name])),
-                allowed,
+                min(SAMPLE_RATIO * stated + ROUNDING, most),
                 f"absolute; {count} random points, compared with the law",
-            )
-        )
+            ),
+        ]
     return checks

@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections.abc import Callable
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
@@ -23,7 +22,7 @@ from ..core import (
 )
 from ..laws import LawTable, parse_law
 from ..materials import CHECKSUM, dataset_content
-from . import table_files
+from .table_files import axes_of, check_content, fields_of, is_law, save
 
 #: Attributes of a grid with the parameters of its roller.
 _PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
@@ -74,11 +73,10 @@ def export(table: Dataset, path: str | PathLike[str]) -> None:
     source, license, the checksum and law_schema.
     """
     path = as_path(path)
-    table_files.check_content(table, "table")
-    formats = LAW if table_files.is_law(table) else GRID
+    check_content(table, "table")
+    kind, formats = ("law", LAW) if is_law(table) else ("grid", GRID)
     suffix = path.suffix.lower()
     if suffix not in formats:
-        kind = "law" if table_files.is_law(table) else "grid"
         raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")
     formats[suffix](table, path)
 
@@ -106,9 +104,9 @@ def _write_csv(table: Dataset, path: Path) -> None:
     path: file to write; it is replaced if it exists.
     Raises FileError if it cannot be written.
     """
-    fields = table[list(table_files.fields_of(table))]
+    fields = table[list(fields_of(table))]
     with replace_file(path) as temporary:
-        fields.to_dataframe(dim_order=list(table_files.axes_of(table))).to_csv(temporary)
+        fields.to_dataframe(dim_order=list(axes_of(table))).to_csv(temporary)
 
 
 def _write_modelica(table: Dataset, path: Path) -> None:
@@ -126,27 +124,23 @@ def _write_modelica(table: Dataset, path: Path) -> None:
     KeyError as :func:`_modelica_header`.
     """
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
-    if table_files.axes_of(plane) != ("V", "delta"):
+    if axes_of(plane) != ("V", "delta"):
         raise described_error(
             "table",
-            f"has the axes {', '.join(table_files.axes_of(table))}",
+            f"has the axes {', '.join(axes_of(table))}",
             "a grid over V and delta alone, the two inputs of a Modelica table; take one alpha, as "
             "by table.isel(alpha=[0]), or build the grid with a single alpha",
         )
     if "M" not in table:
         raise described_error("table", "has no variable M", "a grid with M, as of vr.tables.build")
-    V = table["V"].values
-    delta = table["delta"].values
-    head = np.append(0.0, delta)  # Modelica does not read the corner, but it must be there
-    matrices = {
-        name: np.vstack([head, np.column_stack([V, plane[name].values])])
-        if "delta" in plane[name].dims
-        else np.column_stack([V, plane[name].values])
-        for name in ("Q", "M")
-    }
     lines = ["#1", *(f"# {line}" for line in _modelica_header(table))]
-    for name, matrix in matrices.items():
-        lines += [f"double {name}({matrix.shape[0]},{matrix.shape[1]})"]
+    for name in ("Q", "M"):
+        matrix = np.column_stack([table["V"], plane[name]])
+        if "delta" in plane[name].dims:
+            # Modelica does not read the corner, but it must be there
+            matrix = np.vstack([np.append(0.0, table["delta"]), matrix])
+        rows, columns = matrix.shape
+        lines += [f"double {name}({rows},{columns})"]
         lines += [" ".join(map(repr, row)) for row in matrix.tolist()]
     write_text(path, "\n".join([*lines, ""]))
 
@@ -166,13 +160,11 @@ def _modelica_header(table: Dataset) -> list[str]:
     stated = ", ".join(
         f"{name}: {'dimensionless' if unit == '1' else unit}" for name, unit in units.items()
     )
-    errors = []
-    for name in ("Q", "M"):
-        point = table[name].attrs.get("linear_error_at")
-        errors.append(
-            f"error_{name} = {table[name].attrs.get(_ERROR, np.nan):.3g}"
-            + (f" at {point}" if point else "")
-        )
+    errors = [
+        f"error_{name} = {table[name].attrs.get(_ERROR, np.nan):.3g}"
+        + (f" at {point}" if (point := table[name].attrs.get("linear_error_at")) else "")
+        for name in ("Q", "M")
+    ]
     return [
         f"viscoroll {__version__}: {table.attrs['title']}",
         PAPER,
@@ -209,9 +201,9 @@ def _write_matlab(table: Dataset, path: Path) -> None:
     """
     from scipy.io import savemat
 
-    names = table_files.fields_of(table)
+    names = fields_of(table)
     # lookup blocks want no axes of one node
-    arrays = {name: table[name].values.squeeze() for name in (*table_files.axes_of(table), *names)}
+    arrays = {name: table[name].values.squeeze() for name in (*axes_of(table), *names)}
     content = arrays | {
         "dimensions": {name: ", ".join(map(str, table[name].squeeze().dims)) for name in names},
         "linear_error": {name: table[name].attrs.get(_ERROR, np.nan) for name in names},
@@ -371,9 +363,9 @@ def _write_json(dataset: Dataset, path: Path) -> None:
     write_text(path, json.dumps(content, separators=(",", ":")))
 
 
-#: Suffix -> function that writes a law or a grid.
-_EITHER: dict[str, Callable[[Dataset, Path], None]] = {
-    ".nc": table_files.save,
+#: Suffix -> function (dataset, path) that writes a law or a grid.
+_EITHER: dict[str, Any] = {
+    ".nc": save,
     ".cdf": _write_netcdf3,
 }
 #: Suffix -> function that writes a law.

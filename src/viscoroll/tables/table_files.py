@@ -9,8 +9,6 @@ a new major version changes the meaning of something and is refused by older rea
 Save is atomic, and load checks everything it reads.  :func:`interpolate` uses tensor cubic splines.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterable
 from os import PathLike
@@ -24,7 +22,6 @@ from ..core import (
     ArrayLike,
     Dataset,
     FileError,
-    Floats,
     OutOfTableError,
     ParameterError,
     Values,
@@ -36,15 +33,13 @@ from ..core import (
     read_sealed,
     write_dataset,
 )
-from ..laws import check_nodes, fit_spline, friction_limit, pack_spline, refuse_filled
-from ..materials import checked_netcdf
+from ..laws import check_nodes, friction_limit, increases, pack_spline, refuse_filled
+from ..materials import KIND, checked_netcdf
 
 # --- The schema of the file of a grid ---
 
 #: Version of the schema that this package writes.
 SCHEMA_VERSION = "1.4"
-#: Global attribute with the kind of a file.
-KIND = "viscoroll_table"
 #: Kind of the file of a grid.
 GRID = "grid"
 #: What a user can do about a file that is not as it was written.
@@ -96,60 +91,65 @@ def check_grid(table: Any, path: Any) -> None:
     ParameterError
         A mu, or a load beside it, that is no finite number > 0.
     """
+    if fault := _fault_of(table, path):
+        raise FileError(path, fault)
+    check_nodes(table, path)
+
+
+def _fault_of(table: Any, path: Any) -> str:
+    """Return what is wrong with a grid but for the values of its fields, the first fault in words
+    that follow the path, as :func:`check_grid` states them; "" if nothing is.
+
+    table, path: as in :func:`check_grid`.
+    Raises FileError for a node without a value.
+    """
     if not hasattr(table, "attrs"):
-        raise FileError(
-            path,
+        return (
             f"is {describe_value(table)}, but must be a dataset of vr.tables.build or of "
-            "vr.tables.load(file)",
+            "vr.tables.load(file)"
         )
     about = table.attrs
     if is_law(table):
-        raise FileError(
-            path,
+        return (
             "is a law, not a grid: give vr.load_law(file) as material= of a Scene or Cylinder, and "
-            "call its contact",
+            "call its contact"
         )
     if str(about.get(KIND)) != GRID:
-        raise FileError(
-            path,
+        return (
             f"is not a table of viscoroll (it has no attribute {KIND} = {GRID!r}): vr.tables.build "
-            "makes a grid, vr.tables.law a law, and vr.tables.save writes either",
+            "makes a grid, vr.tables.law a law, and vr.tables.save writes either"
         )
-    version = about.get("schema_version")
+    version = str(about.get("schema_version"))
     major = SCHEMA_VERSION.partition(".")[0]
-    if str(version).partition(".")[0] != major:
-        problem = (
-            f"has schema_version = {version!s:.20}, but viscoroll {__version__} reads {major}.x"
+    if version.partition(".")[0] != major:
+        return (
+            f"has schema_version = {version:.20}, but viscoroll {__version__} reads {major}.x; "
+            f"{_REBUILD}, or use the version that wrote it"
         )
-        raise FileError(path, f"{problem}; {_REBUILD}, or use the version that wrote it")
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
-            raise FileError(path, f"is incomplete, as variable {name!r} is missing; {_REBUILD}")
+            return f"is incomplete, as variable {name!r} is missing; {_REBUILD}"
         values = table[name].values
         dims = table[name].dims
         own = (name,) if name in axes else tuple(dim for dim in axes if dim in dims)
         if dims != own:
-            raise FileError(path, f"variable {name!r} has the dimensions {dims}: must be {own}")
+            return f"variable {name!r} has the dimensions {dims}: must be {own}"
         unit = table[name].attrs.get("units")
         # a grid of a cylinder, in SI units, states its load; that of a scene has none
         written = attributes(name, "load" in about)["units"]
         if unit != written:
-            allowed = (
-                f"{written!r} (a grid with the attribute load, the force per length in N/m, is in "
-                "SI units, one without it dimensionless)"
+            return (
+                f"variable {name!r} has units = {unit!r:.40}: must be {written!r} (a grid with the "
+                "attribute load, the force per length in N/m, is in SI units, one without it "
+                "dimensionless)"
             )
-            raise FileError(path, f"variable {name!r} has units = {unit!r:.40}: must be {allowed}")
         if values.dtype != np.float64:
-            raise FileError(
-                path, f"variable {name!r} is of type {values.dtype}: convert it by .astype(float)"
-            )
+            return f"variable {name!r} is of type {values.dtype}: convert it by .astype(float)"
         refuse_filled(table[name], path)
-        if name in axes and (not values.size or (np.diff(values) <= 0.0).any()):
-            raise FileError(
-                path, f"coordinate {name!r} must increase strictly: sort it by .sortby({name!r})"
-            )
-    check_nodes(table, path)
+        if name in axes and not (values.size and increases(values)):
+            return f"coordinate {name!r} must increase strictly: sort it by .sortby({name!r})"
+    return ""
 
 
 # --- Files of tables ---
@@ -210,10 +210,8 @@ def save(table: Dataset, path: str | PathLike[str]) -> None:
     ``tests/tables/test_law.py``).
     """
     check_content(table, f"the table for {path}")
-    plain = table.copy()
     # a table that was read has the encoding of its file, which may be another program's
-    for variable in plain.variables.values():
-        variable.encoding = {}
+    plain = table.drop_encoding()
     # Compression does not make the coefficients of a law smaller: their last digits are noise.
     encoding = (
         {str(name): {"_FillValue": None} for name in plain.variables} if is_law(plain) else None
@@ -306,17 +304,13 @@ def info(path: str | PathLike[str]) -> str:
     size = Path(path).stat().st_size / 1e3
     lines = [f"{path}: {about[KIND]}, {size:.0f} kB", about.get("title", "no title"), ""]
     if is_law(table):
+        stated = checked_netcdf.stated_errors(table)
         lines += [f"  {'function':<18}largest error"]
-        lines += [
-            f"  {name:<18}{error:.1e}"
-            for name, error in checked_netcdf.stated_errors(table).items()
-        ]
+        lines += [f"  {name:<18}{error:.1e}" for name, error in stated.items()]
     else:
-        axes = {axis: table[axis].values for axis in axes_of(table)}
-        lines += [
-            f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]"
-            for name, nodes in axes.items()
-        ]
+        for name in axes_of(table):
+            nodes = table[name].values
+            lines.append(f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]")
         lines += ["", f"  {'field':<26}{'axes':<18}error between the nodes"]
         for name in fields_of(table):
             field = table[name]
@@ -378,8 +372,10 @@ class Interpolant:
         check_grid(table, getattr(table, "encoding", {}).get("source", "the dataset"))
         self._table = table
         self._axes = axes_of(table)
-        self._linear = linear
-        self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
+        self._degree = 1 if linear else 3
+        #: axis -> function of the coordinate in which fields are smooth; splines run in its values
+        self._maps = dict.fromkeys(() if linear else ("V", "alpha"), np.log)
+        self._splines: dict[str, Any] = {}
         # The law has these bounds; a spline may exceed them near the kink at delta_star.
         limit = friction_limit(table.attrs)
         self._bounds = {"Q": (-limit, limit), "beta": (0.0, 1.0)}
@@ -401,7 +397,26 @@ class Interpolant:
         names = check_names(
             "fields", known if fields is None else fields, known, "a field of this table"
         )
-        coordinates, shape = self._map_points(points, names)
+        needed = {str(dim) for name in names for dim in self._table[name].dims}
+        if not needed <= points.keys() <= set(self._axes):
+            wanted = ", ".join(axis for axis in self._axes if axis in needed)
+            raise ParameterError(
+                "coordinates",
+                ", ".join(points) or "none",
+                f"{wanted or 'none'}, as needed for {', '.join(names)} (this grid has the axes "
+                f"{', '.join(self._axes)})",
+            )
+        coordinates = {
+            name: check_array(name, value, unit=self._table[name].attrs["units"])
+            for name, value in points.items()
+        }
+        shape = broadcast_shape(**coordinates)
+        for name, array in coordinates.items():
+            low, high = self._table[name].values[[0, -1]]  # an axis ascends
+            outside = (array < low) | (array > high)
+            if outside.any():
+                raise OutOfTableError(name, float(array[outside].flat[0]), low, high)
+            coordinates[name] = np.broadcast_to(self._maps.get(name, np.asarray)(array), shape)
         results = {}
         for name in names:
             dims, values = self._spline(name)
@@ -456,82 +471,43 @@ class Interpolant:
 
         (name,) = check_names("field", field, fields_of(self._table), "a field of this table")
         dims, found = self._spline(name)
-        logs = () if self._linear else ("V", "alpha")
-        return spline_at, pack_spline(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
-
-    def _map_points(
-        self, points: dict[str, ArrayLike], names: tuple[str, ...]
-    ) -> tuple[dict[str, Floats], tuple[int, ...]]:
-        """Check the points of a call, and convert them to the coordinates of the splines.
-
-        points: axis -> coordinates that the caller gave, numbers or arrays that broadcast, perhaps
-            with units.
-        names: names of the fields to interpolate, which need the axes that they depend on.
-        Raises ParameterError for axes that are missing or unknown, for values that are no finite
-        numbers, for shapes that do not broadcast and for a unit of another dimension;
-        OutOfTableError for a point outside of an axis, whose ends belong to it.
-        Returns (each axis of ``points`` -> coordinates of the interpolation, read-only, in the
-        broadcast shape; that shape, () of numbers).  Coordinates are ln V, ln alpha, and delta as
-        it is; where the interpolation is linear all are as given.
-        """
-        needed = {str(dim) for name in names for dim in self._table[name].dims}
-        if not needed <= points.keys() <= set(self._axes):
-            wanted = ", ".join(axis for axis in self._axes if axis in needed)
-            raise ParameterError(
-                "coordinates",
-                ", ".join(points) or "none",
-                f"{wanted or 'none'}, as needed for {', '.join(names)} (this grid has the axes "
-                f"{', '.join(self._axes)})",
-            )
-        axes = {name: self._table[name] for name in points}
-        arrays = {
-            name: check_array(name, value, unit=axes[name].attrs.get("units", "1"))
-            for name, value in points.items()
-        }
-        shape = broadcast_shape(**arrays)
-        for name, array in arrays.items():
-            low, high = axes[name].values[[0, -1]]  # an axis ascends
-            outside = (array < low) | (array > high)
-            if outside.any():
-                raise OutOfTableError(name, float(array[outside].flat[0]), low, high)
-        return {
-            name: np.broadcast_to(self._map_axis(name, array), shape)
-            for name, array in arrays.items()
-        }, shape
-
-    def _map_axis(self, name: str, values: Floats) -> Floats:
-        """Transform values on one axis of the table to the coordinate in which the fields are
-        smooth.
-
-        Splines are fitted and evaluated in that coordinate.
-
-        name: name of the axis: "V", "delta" or "alpha".
-        values: values on the axis, of any shape, > 0 on V and alpha.
-        Returns an array of the same shape.  Where the interpolation is linear, and on delta:
-        ``values`` itself, not a copy.  Else ln(values).
-        """
-        return values if self._linear or name == "delta" else np.log(values)
+        bounds = self._bounds.get(name, (-np.inf, np.inf))
+        return spline_at, pack_spline(found, dims, tuple(self._maps), bounds)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
         """Return a field as a spline over its axes, fitted at first use and kept in ``_splines``.
 
-        Axes of one node are left out, since nothing can be interpolated along them.  The degree is
-        3, or 1 with ``_linear``, and lower along axes of few nodes (:func:`.law_grid.fit_spline`).
+        It is a not-a-knot tensor spline.  Axes of one node are left out, since nothing can be
+        interpolated along them.  The degree is ``_degree``, along axes of fewer than that + 1 nodes
+        their number less 1.
 
         name: name of a field, which the caller has checked (else KeyError).
         Returns (names of the remaining axes, in their order; the spline).  The spline is a function
-        of coordinates as :meth:`_map_axis` makes them, (..., axes); it returns values in the unit
+        of coordinates as ``_maps`` makes them, (..., axes); it returns values in the unit
         of the field, (...).  It does not check that points lie inside the axes.  If no axis
         remains, the names are () and the second entry is the value of the field, an array of shape
         ().
         Raises ValueError of scipy where values of the table are not finite, as after the caller
         changed them.
         """
+        from scipy.interpolate import NdBSpline, make_interp_spline
+
         if name not in self._splines:
             field = self._table[name].squeeze()
             dims = tuple(map(str, field.dims))
-            axes = [self._map_axis(dim, self._table[dim].values) for dim in dims]
-            self._splines[name] = dims, fit_spline(field.values, axes, 1 if self._linear else 3)
+            spline = field.values
+            knots = []
+            degrees = []
+            for n, dim in enumerate(dims):
+                nodes = self._maps.get(dim, np.asarray)(self._table[dim].values)
+                degrees.append(min(self._degree, nodes.size - 1))
+                one = make_interp_spline(nodes, spline, k=degrees[n], axis=n)
+                knots.append(one.t)
+                # scipy returns coefficients with the axis of the spline first
+                spline = np.moveaxis(one.c, 0, n)
+            if dims:
+                spline = NdBSpline(tuple(knots), np.ascontiguousarray(spline), tuple(degrees))
+            self._splines[name] = dims, spline
         return self._splines[name]
 
 
