@@ -219,11 +219,12 @@ def contact(
     """
     _, scene, scale = resolve_model(roller, "contact")
     creep_name = check_one_given(delta=delta, omega=omega)
-    slopes = check_bool("slopes", slopes)
+    if slopes is not False:
+        slopes = check_bool("slopes", slopes)
     names = field_names(fields, slopes, method, scene, scale.si)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
-    creep = check_array(creep_name, given[creep_name])
+    creep, _ = check_array_extent(creep_name, given[creep_name])
     given = {"V": speed, creep_name: creep}
     if scale.si:
         warn_of_contact(roller, speed, ends)

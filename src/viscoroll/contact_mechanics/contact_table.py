@@ -47,7 +47,7 @@ from ..laws import (
     records_of_alphas,
     sort_by_octave,
 )
-from ..materials import Bodies, Prony
+from ..materials import Bodies, Cover, Prony
 from .parameters import Parameters
 
 # --- The fields of a contact state ---
@@ -120,7 +120,7 @@ def field_names(
     """
     check_choice("method", method, "table", "direct", "coupled")
     like = scene.like_bodies
-    cover = scene.tabulated or scene.cover is not None
+    cover = scene.tabulated or isinstance(scene.material, Cover)
     if fields is not None:
         names = check_names(
             "fields", fields, _KNOWN if si else [x for x in _KNOWN if x != "M_error"], "a field"
@@ -153,8 +153,8 @@ def field_names(
             refuse_fields((UNSTEADY,), names, allowed)
     if fields is not None:
         return names
-    refused = NOT_IN_GRIDS if scene.gridded else ()
-    return tuple(name for name in dict.fromkeys(names + added) if name not in refused)
+    names = tuple(dict.fromkeys(names + added))
+    return tuple(name for name in names if name not in NOT_IN_GRIDS) if scene.gridded else names
 
 
 def refuse_fields(names: Iterable[str], refused: Iterable[str], allowed: str) -> None:
@@ -221,7 +221,7 @@ def complete(
             found[name] = 0.5 * found[_HALVES[name]]
     if "full_slip" in found:
         found["full_slip"] = found["full_slip"] != 0.0
-    return {name: found[name] for name in names}
+    return found if names == computed else {name: found[name] for name in names}
 
 
 # --- The law at many states, in blocks on threads ---
@@ -288,8 +288,12 @@ def evaluate_contact(
     arrays["omega" if creep_is_omega else "delta"] = creep
     direct = method == "direct"
     fastest = _FASTEST_DIRECT if direct and "Q" in names else FASTEST
-    shape = broadcast_shape(**arrays)
-    refuse_overflow(scene.kappa, V, fastest)
+    shape: tuple[int, ...] = ()
+    if V.ndim or creep.ndim or scene.shape:
+        shape = broadcast_shape(**arrays)
+        refuse_overflow(scene.kappa, V, fastest)
+    elif not abs(scene.kappa * float(V)) <= fastest:  # true of NaN too
+        refuse_overflow(scene.kappa, V, fastest)
     if (scene.material is not None or scene.gridded) and direct:
         raise ParameterError(
             "method",
@@ -353,9 +357,7 @@ def evaluate_law(
     ConvergenceError
         If an iteration of the printed equations reaches its limit.
     """
-    from ..kernels.law import contact_kernel
-    from ..kernels.law import law_record as states
-
+    contact_loop, states = _kernel()
     count = math.prod(shape)
     record: Any = material.record if isinstance(material, LawTable) else None
     rows = kernel_rows(names)
@@ -403,7 +405,7 @@ def evaluate_law(
                     f"{stop - 1}, counted from 0: use method='table'"
                 )
         elif names != (UNSTEADY,):
-            contact_kernel.contact_loop(laws, request, scratch, stop - start)
+            contact_loop(laws, request, scratch, stop - start)
         if UNSTEADY not in names:
             return
         N = out[names.index(UNSTEADY), start:stop]
@@ -415,7 +417,7 @@ def evaluate_law(
             # the state has no table of N: its zeta, and N by the modes at that zeta
             zeta = np.empty((1, stop - start))
             request = request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0)
-            contact_kernel.contact_loop(laws, request, scratch, stop - start)
+            contact_loop(laws, request, scratch, stop - start)
             N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
     # few states of one law: no blocks, threads and readers, which would take longer than the states
@@ -432,6 +434,18 @@ def evaluate_law(
         block,
     )
     return out
+
+
+@lru_cache(maxsize=1)
+def _kernel() -> tuple[Any, Any]:
+    """Return the kernel that evaluates the law at many states, and the module of the types of its
+    arguments.
+
+    They are imported at the first call, and kept: the statement takes a microsecond each time.
+    """
+    from ..kernels.law import contact_kernel, law_record
+
+    return contact_kernel.contact_loop, law_record
 
 
 class Contacts(NamedTuple):

@@ -214,6 +214,8 @@ def extent(array: Floats) -> tuple[float, float]:
 
     array: float64, of any shape; an empty one raises ValueError.
     """
+    if array.ndim == 0:
+        return float(array), float(array)
     return float(array.min()), float(array.max())
 
 

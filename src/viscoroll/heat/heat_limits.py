@@ -371,8 +371,8 @@ def conductance(
     12.566
     """
     check_choice("core", core, "cooled", "insulated")
-    given = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
-    arrays: dict[str, Any] = {
+    given: Any = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
+    arrays: Any = {
         name: check_array(name, x, unit=SI, above=0.0) for name, x in given.items() if x is not None
     }
     broadcast_shape(**arrays)

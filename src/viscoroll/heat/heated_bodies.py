@@ -397,8 +397,10 @@ def warm_pair(pair: Pair, *factors: Factors | None) -> Pair:
     factors: for the cylinder, then for the base, (a_T, sqrt(b_T)) at the m temperatures, (m,) each,
         dimensionless; None: that body does not change.
     """
-    bodies = [warm_solid(body, *each) if each else body for body, each in zip(pair.bodies, factors)]
-    return Pair(*bodies, plane=pair.plane)
+    cylinder, base = (
+        warm_solid(body, *each) if each else body for body, each in zip(pair.bodies, factors)
+    )
+    return Pair(cylinder, base, pair.plane)
 
 
 def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:

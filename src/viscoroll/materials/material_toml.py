@@ -362,7 +362,7 @@ def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
     if "reference" in given:
         reference = given.pop("reference")
         given["temperature"] = check_number("reference", reference, above=ABSOLUTE_ZERO)
-    forms = {key: vars(given.pop(key)) for key in ("prony", "creep") if key in given}
+    forms: Any = {key: vars(given.pop(key)) for key in ("prony", "creep") if key in given}
     if series := parse_series(path, name, forms):
         given["prony"] = series
     if times := given.keys() & {"T_epsilon", "T_sigma"}:

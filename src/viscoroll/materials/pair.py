@@ -49,8 +49,10 @@ class Solid(NamedTuple):
     thickness: Any = None
     nu_instant: float | None = None
 
-    #: long-time shear modulus, Pa, a number or (n,)
-    G = Material.G  # type: ignore[misc]
+    @property
+    def G(self) -> Any:
+        """Long-time shear modulus E/(2 (1 + nu)), Pa, a number or (n,)."""
+        return self.E / (2.0 * (1.0 + self.nu))
 
 
 @dataclass(frozen=True)
