@@ -477,7 +477,6 @@ def extent_of(values: Any) -> tuple[float, float]:
 
     NaN is ignored; (0.0, 0.0) if there is no other number.
     """
-    low, high = (
-        float(extreme.reduce(values, axis=None, initial=np.nan)) for extreme in (np.fmin, np.fmax)
-    )
-    return (0.0, 0.0) if math.isnan(low) else (low, high)
+    low = float(np.fmin.reduce(values, axis=None, initial=np.nan))
+    high = float(np.fmax.reduce(values, axis=None, initial=np.nan))
+    return (0.0, 0.0) if low != low else (low, high)

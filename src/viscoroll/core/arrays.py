@@ -254,13 +254,13 @@ def broadcast_shape(**arrays: Any) -> Shape:
     Returns the shape, a tuple of ints; () if no array has axes, or none is given.
     Raises ParameterError if they do not broadcast; the message lists the shapes.
     """
-    shapes = {name: getattr(array, "shape", ()) for name, array in arrays.items()}
-    different = {(), *shapes.values()}
+    # a set of the different shapes: mostly one, which needs no call of numpy
+    shapes = {getattr(array, "shape", ()) for array in arrays.values()} - {()}
     try:
-        # numbers alone need no call of numpy
-        return np.broadcast_shapes(*different) if len(different) > 1 else ()
+        return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
-        found = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+        each = {name: getattr(array, "shape", ()) for name, array in arrays.items()}
+        found = ", ".join(f"{name} {shape}" for name, shape in each.items() if shape)
         allowed = "equal, or broadcast as in numpy, for example (3, 1) with (4,)"
         raise ParameterError(
             "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"
