@@ -94,6 +94,22 @@ class Loads(NamedTuple):
     j: Floats
     V: Floats | None = None
 
+    def at_speed(
+        self, load: Any, V: Floats, omega: Any = 0.0, sign: Any = 1.0
+    ) -> tuple[Floats, Floats]:
+        """Return force and torque at given speeds, in the frame of the motion.
+
+        load : index of the load of each speed, a number or (m,).
+        V, omega : speeds, dimensionless, (m,); omega may be left out where it has no gain.
+        sign : -1.0 where a motion towards -x is given as its mirror image, under values at rest of
+            the other sign, else 1.0; a number or (m,).
+        Returns (force, torque), divided by P and P R, (m,) each.
+        """
+        gains = self.gains
+        force = sign * self.force[load] + gains.force_V * V + gains.force_omega * omega
+        torque = sign * self.torque[load] + gains.torque_V * V + gains.torque_omega * omega
+        return force, torque
+
 
 def loads_of(
     scene: Parameters,
@@ -137,7 +153,7 @@ def loads_of(
         arrays["V"] = check_array("V", V)
         refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
     # the rates of disturbances are proportional to gamma
-    shape = broadcast_shape(**arrays, gamma=0.0 if scene.gamma is None else scene.gamma)
+    shape = broadcast_shape(**arrays, gamma=scene.gamma)
     # the rows are in the order of the fields of Loads; slope counts for the shape alone before
     arrays["force"] = push + arrays.pop("slope")
     rows = broadcast_rows(arrays.values(), shape)
@@ -288,9 +304,8 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     for n, kappa in enumerate(loads.kappa):
         contacts = Contacts(law, kappa, loads.mu[n])
         for sign in (1.0, -1.0):
-            # a motion towards -x is the mirror image, under loads of the other sign
-            one = loads._replace(force=sign * loads.force[n], torque=sign * loads.torque[n])
-            zeros = find_zeros(partial(_torque_left_by_speed, contacts, one), nodes, rounding[n])
+            left = partial(_torque_left_by_speed, contacts, loads, n, sign)
+            zeros = find_zeros(left, nodes, rounding[n])
             # zeros are log2(kappa V)
             parts.append(
                 (np.full(zeros.size, n), np.full(zeros.size, sign), np.exp2(zeros) / kappa)
@@ -327,19 +342,21 @@ def search_nodes(law: LawTable) -> Floats:
     return np.linspace(low, high, int(_DENSITY * (high - low)))
 
 
-def _torque_left_by_speed(contacts: Contacts, load: Loads, x: Floats) -> Floats:
+def _torque_left_by_speed(
+    contacts: Contacts, loads: Loads, load: int, sign: float, x: Floats
+) -> Floats:
     """Return torque - M_cylinder - Q, with the Q that balances the force on the axis.
 
     contacts : the law of a cover, or a table, at one kappa and one mu.
-    load : one load in the frame where V > 0, whose force and torque are numbers.
+    loads : the loads, dimensionless.
+    load : index of the load, to which kappa and mu belong.
+    sign : sign of the motion, in whose frame V > 0.
     x : log2(kappa V) of each speed, (n,).
     Returns the torque that is not balanced, divided by P R, (n,), as :func:`torque_left`; 0 where
     the cylinder rolls steadily.
     """
     V = np.exp2(x) / contacts.kappa
-    force = load.force + load.gains.force_V * V
-    torque = load.torque + load.gains.torque_V * V
-    return torque_left(contacts, V, force, torque)
+    return torque_left(contacts, V, *loads.at_speed(load, V, sign=sign))
 
 
 def torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Floats:
@@ -416,13 +433,10 @@ def balance(
     """
     from ..kernels.law.coupled_splines import balance_loop
 
-    kappa, mu = (
-        np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=float) for each in contacts[1:]
-    )
-    table = contacts.law.record.table
+    kappa, mu = broadcast_rows(contacts[1:], V.shape)
     out = np.empty((V.size, 2))
-    balance_loop(table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
-    return out[:, 0] / (2.0 * kappa), out[:, 1].copy()
+    balance_loop(contacts.law.record.table, kappa, mu, kappa * V, load, spin, out)
+    return out[:, 0] / (2.0 * kappa), out[:, 1]
 
 
 def loads_without_omega(

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import (
-    DIMENSIONS,
     Dataset,
     Floats,
     Integers,
@@ -78,8 +77,7 @@ class Diagnosis(NamedTuple):
     """Data for the explanation why a load has no equilibrium.
 
     loads : the loads, n of them, dimensionless.
-    states : (index of the load, V, Q) of all states, whether or not the friction suffices,
-        (states,) each, dimensionless.
+    states : all states, whether or not the friction suffices.
     number : equilibria of each load, (n,).
     maximum : (largest kappa M, kappa V there), dimensionless; (NaN, NaN) with feedback, and for
         elastic bodies.
@@ -88,7 +86,7 @@ class Diagnosis(NamedTuple):
     """
 
     loads: Loads
-    states: tuple[Integers, Floats, Floats]
+    states: States
     number: Integers
     maximum: tuple[float, float]
     elastic: bool
@@ -100,9 +98,7 @@ class Diagnosis(NamedTuple):
         Returns a str for one load, else an array of str (dtype object) in the shape of the loads.
         """
         shape = self.loads.shape
-        found = [
-            self._reason(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)
-        ]
+        found = ["" if number else self._reason(n, scale) for n, number in enumerate(self.number)]
         return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
     def _reason(self, n: int, scale: Scale) -> str:
@@ -127,9 +123,9 @@ class Diagnosis(NamedTuple):
         mu = loads.mu[n]
         kappa = loads.kappa[n]
         total = at_rest * load
-        own, V, Q = self.states
-        if (own == n).any():  # the state that asks for the least friction
-            V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
+        states = self.states.rows[:, self.states.load == n]
+        if states.size:  # the state that asks for the least friction
+            V, Q = states[[Field.V, Field.Q], np.abs(states[Field.Q]).argmin()]
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 return (
@@ -156,8 +152,7 @@ class Diagnosis(NamedTuple):
             )
         return (
             f"|{name}| = {abs(total):.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest "
-            f"{moment}"
-            f" (at V = {V * speed:.6g}{of_speed})"
+            f"{moment} (at V = {V * speed:.6g}{of_speed})"
         )
 
 
@@ -313,38 +308,29 @@ class Steady(Equilibria):
         """
         number = states.load
         count = reasons.number
-        gains = loads.gains
-        V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
-        force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
-        torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
+        fields = states.rows[: Field.FAST]
+        V, _, Q, M_half_space, M_cylinder, _, omega = fields
+        force, torque = loads.at_speed(number, V, omega)
         # with V given: the balance of the axis, and that of the cylinder
         if loads.given == "torque":
             force = M_half_space - Q
         elif loads.given == "force":
             torque = M_cylinder + Q
         grip = 1.0 - np.abs(Q) / loads.mu[number]
-        # rows: those of _FIELDS, V to omega from the states; then the moments without traction and
-        # the three of the eigenvalues, which are read below
-        more = np.array(
-            [M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary]
-        )
-        rows = np.concatenate([states.rows[: Field.FAST], more])
-        rows = pad(rows, number, count, loads.shape)
-        found = dict(zip(_FIELDS, rows, strict=False))
-        for name in (found.keys() & DIMENSIONS.keys()) if scale.si else ():
-            unit = scale[name]
-            # in place of append_axis, whose calls take longer here than the rest
-            found[name] = found[name] * (unit[..., None] if isinstance(unit, np.ndarray) else unit)
+        # those of _FIELDS, V to omega from the states, then those of the states from FAST on
+        rows = [*fields, M_half_space + M_cylinder, grip, force, torque, *states.rows[Field.FAST :]]
+        padded = pad(rows, count, loads.shape)
+        found = {name: each * append_axis(scale[name]) for name, each in zip(_FIELDS, padded)}
         # the unit of all three, 1/s of a cylinder
-        fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
-        eigenvalues = np.empty((*fast.shape, 2), np.complex128)
-        eigenvalues[..., 0] = fast - 1j * imaginary
-        eigenvalues[..., 1] = slow + 1j * imaginary
-        found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
-        found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
+        fast, slow, imaginary = padded[-5:-2] * append_axis(scale["rate_fast"])
+        found |= {
+            "stable": (fast < 0.0) & (slow < 0.0),
+            "eigenvalues": np.stack([fast - 1j * imaginary, slow + 1j * imaginary], axis=-1),
+            "count": count.reshape(loads.shape) if loads.shape else int(count[0]),
+        }
         super().__init__(found, labels, si=scale.si)
         # without traction, divided by P R
-        self._free = rows[len(_FIELDS) : len(_FIELDS) + 2]
+        self._free = padded[-2:]
         self.reasons = reasons
         self.scale = scale
 
@@ -387,16 +373,14 @@ class Steady(Equilibria):
         half_space = V * free_half_space / R
         cylinder = omega * free_cylinder
         # what shear changes in the moments is taken from friction
-        slip = slip + (
-            V * (M_half_space - free_half_space) / R + omega * (M_cylinder - free_cylinder)
-        )
+        slip += V * (M_half_space - free_half_space) / R + omega * (M_cylinder - free_cylinder)
         whole = slip + half_space + cylinder
         speed = np.where(moving, np.abs(V), 1.0)
-        with np.errstate(invalid="ignore"):
-            coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
         powers = np.stack([force * V, torque * omega])
         output, input_ = (np.maximum(signed, 0.0).sum(axis=0) for signed in (-powers, powers))
-        efficiency = np.divide(output, input_, out=np.full(V.shape, np.nan), where=input_ > 0.0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
+            efficiency = np.where(input_ > 0.0, output / input_, np.nan)
         found: Any = slip, half_space, cylinder, coefficient, efficiency
         if self._labels is not None:
             found = map(self._labels.apply, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
@@ -412,7 +396,7 @@ class Steady(Equilibria):
         """0 where there is an equilibrium, else 1; an int, or an array in the shape of the
         loads.
         """
-        return np.where(self.success, 0, 1)[()]
+        return 1 - self.success
 
     @property
     def reason(self) -> Any:
@@ -447,11 +431,9 @@ class Steady(Equilibria):
         >>> vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).to_xarray()["V"].attrs["units"]
         'm s-1'
         """
-        rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
-        found = {name: self[name] for name in (*_FIELDS, "stable")} | {
-            "rate_fast": rates[0],
-            "rate_slow": rates[1],
-        }
+        rates = np.asarray(self.eigenvalues).real
+        found = {name: self[name] for name in (*_FIELDS, "stable")}
+        found |= {"rate_fast": rates[..., 0], "rate_slow": rates[..., 1]}
         return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
 
 
@@ -462,20 +444,15 @@ def append_axis(unit: Any) -> Any:
     return unit[..., None] if isinstance(unit, np.ndarray) else unit
 
 
-def pad(rows: Floats, number: Integers, count: Integers, shape: tuple[int, ...]) -> Floats:
+def pad(rows: Any, count: Integers, shape: tuple[int, ...]) -> Floats:
     """Arrange equilibria, one after another, as arrays over states and equilibria, padded with NaN.
 
-    rows: fields of the equilibria, sorted by state, (fields, m).
-    number: index of the state of each, (m,).
+    rows: fields of the equilibria, sorted by state, (m,) each.
     count: number of equilibria of each state, (n,).
     shape: shape of the n states.
     Returns the fields, (fields, states..., equilibria).
     """
     most = int(count.max(initial=0))
-    if most * count.size > number.size:  # some have fewer
-        # place of each among those of its state
-        place = np.arange(number.size) - (np.cumsum(count) - count)[number]
-        padded = np.full((len(rows), count.size * most), np.nan)
-        padded[:, number * most + place] = rows
-        rows = padded
-    return rows.reshape(len(rows), *shape, most)
+    padded = np.full((len(rows), count.size, most), np.nan)
+    padded[:, np.arange(most) < count[:, None]] = rows
+    return padded.reshape(len(rows), *shape, most)

@@ -178,11 +178,10 @@ class Steadiness(Assumption):
             worst = (
                 free.take(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
             )
-            described = motion_share is not None
             sentence = (
-                _describe_motion(worst, most, float(np.mean(motion_share)))
-                if described
-                else _describe_free(worst)
+                _describe_free(worst)
+                if motion_share is None
+                else _describe_motion(worst, most, float(np.mean(motion_share)))
             )
         created = cls(value <= STEADY_LIMIT, value, sentence)
         created.free = free
@@ -253,11 +252,9 @@ class Steadiness(Assumption):
         """
         if self.motion_share is not None:
             return self.motion_share
-        left = np.asarray(self.ten_percent.left)
-        whole = np.asarray(self.whole)
-        return np.divide(
-            left, whole, out=np.asarray(self.value > STEADY_LIMIT, float), where=left < whole
-        )[()]
+        left = self.ten_percent.left
+        slow = np.asarray(self.value > STEADY_LIMIT, float)
+        return np.divide(left, self.whole, out=slow, where=left < self.whole)[()]
 
 
 def _describe_free(free: FreeRolling) -> str:
@@ -269,7 +266,7 @@ def _describe_free(free: FreeRolling) -> str:
     Returns a str without a full stop.  Where the unsteadiness is above 0.1 it states alone from
     which speed on it is not; for an elastic cylinder alone that it never stops.
     """
-    speed, time, length = (f" {unit}".rstrip() for unit in free.units)
+    speed, time, length = free.units
     value = float(free.unsteadiness)
     most = free.reach(STEADY_LIMIT)
     whole = free.distance()
@@ -314,7 +311,7 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     text += "the error of V is below 10 % "
     if most <= STEADY_LIMIT:
         return text + "throughout"
-    speed = f"{free.reach(STEADY_LIMIT).speed:.2g} {free.units[0]}".rstrip()
+    speed = f"{free.reach(STEADY_LIMIT).speed:.2g}{free.units[0]}"
     below = (
         "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is below that speed"
     )
@@ -369,16 +366,18 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     assert cover is not None
     half = 0.5 * lam
     thickness = float(np.min(cover.thinnest))
-    layers = [(nu, h) for _, nu, h in map(cover.body, ("cylinder", "base")) if h is not None]
-    limits = [np.interp(nu, _NU, _MOST_THETA) for nu, _ in layers]
-    holds = np.all(
-        [half / h <= limit for (_, h), limit in zip(layers, limits, strict=True)], axis=0
-    )
+    # (half contact length over thickness that is allowed, thickness) of each layer
+    layers = [
+        (np.interp(nu, _NU, _MOST_THETA), h)
+        for _, nu, h in map(cover.body, ("cylinder", "base"))
+        if h is not None
+    ]
+    holds = np.all([half / h <= limit for limit, h in layers], axis=0)
     theta = half / cover.thinnest
     sentence = (
         f"the layer is {thickness:.3g} times as thick as the contact at rest is long; half the "
         f"contact length is up to {largest(theta):.2g} times the thickness, up to "
-        f"{np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is allowed with "
+        f"{min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
         "coupled=False, where the contact sticks in front and slips behind; the table of the "
         "coupled solution, from which states with traction are otherwise, needs no limit"
     )
@@ -418,9 +417,10 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     limited = np.minimum(2.0 * np.abs(by_base + (1.0 + free) * by_cylinder) / star, 1.0)
     with np.errstate(divide="ignore"):
         value = limited / (1.0 - limited**4) ** 0.25
+    effect = np.minimum(value, 1.0)
     error = stated_error(float(np.min(cover.thinnest))) + _LEAST_SHEAR_ERROR
-    error = error + _SHEAR_ERROR * np.minimum(value, 1.0)
-    levers = np.abs(free) + 0.5 * star * np.minimum(value, 1.0)
+    error = error + _SHEAR_ERROR * effect
+    levers = np.abs(free) + 0.5 * star * effect
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     most = largest(value)
     beyond = (
@@ -431,14 +431,13 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
         f"M up to {largest(error_of_M):.1g} P l0" + (beyond if most > 1.0 else "")
     )
+    sentence = f"shear acts back on the pressure; compared with method='coupled' {errors}"
     if scene.tabulated:
         sentence = (
             "shear acts back on the pressure: states with traction are from a table of both solved "
             f"together; with coupled=False {errors}"
         )
-        return Assumption(np.full(np.shape(value), True)[()], value, sentence)
-    sentence = f"shear acts back on the pressure; compared with method='coupled' {errors}"
-    return Assumption(value <= 1.0, value, sentence)
+    return Assumption((value <= 1.0) | scene.tabulated, value, sentence)
 
 
 # --- Which assumptions of the model a state violates ---
@@ -490,8 +489,9 @@ def validity(
     True
     """
     _, scene, scale = resolve_model(roller, "validity")
-    speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
-    given = {name: check_array(name, value, unit=scale) for name, value in speeds.items()}
+    given = {"V": check_array("V", V, unit=scale)}
+    if omega is not None:
+        given["omega"] = check_array("omega", omega, unit=scale)
     with np.errstate(over="ignore"):
         scaled = {name: divide_by_unit(name, array, scale[name]) for name, array in given.items()}
     speed = scaled["V"]
