@@ -340,9 +340,7 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
     )
 
 
-def assess_inertia(
-    wave_ratio: Any, unknown: Sequence[str] = (), decides: bool = True
-) -> Assumption:
+def assess_inertia(wave_ratio: Any, unknown: Sequence[str], decides: bool) -> Assumption:
     """Compare the speed with the shear wave speed: far below it the inertia of the deforming bodies
     is negligible.
 

@@ -89,9 +89,9 @@ class Curve:
         # above: u = lam/(2 zeta) with lam = (1 + 2 h/zeta)^(-1/2).  M is kappa times the moment
         u = np.exp(self.ln_u)
         M = u * (half_space + cylinder)
-        self._low = float(u[0])
-        self._high = float(u[-1])
-        self._M_high = float(M[-1])
+        self._low = u[0]
+        self._high = u[-1]
+        self._M_high = M[-1]
         self._N = CubicSpline(self.ln_u, N)
         self._u2_over_M = CubicSpline(self.ln_u, u * u / M)
         # integrals of du/M and of u du/M, over ln u
@@ -357,7 +357,7 @@ class FreeRolling:
         Returns a list of the arrays in the shape of u; numbers if u has no axes.  Overflow gives
         infinity, and NaN where g is NaN, without warnings.
         """
-        out = np.empty((len(elastic), self.u.size))
+        out = np.full((self.u.size, len(elastic)), elastic).T
         index, *arrays = (
             np.broadcast_to(array, self.u.shape).ravel()
             for array in (self.index, self.u, self.g, *more)
@@ -368,11 +368,8 @@ class FreeRolling:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             for material, part in zip(self.materials, np.split(order, ends)):
                 curve = curve_of(material) if part.size else None
-                values: Any = elastic
                 if curve is not None:
-                    values = function(curve, *(array[part] for array in arrays))
-                for row, value in zip(out, values, strict=True):
-                    row[part] = value
+                    out[:, part] = function(curve, *(array[part] for array in arrays))
         return [row.reshape(self.u.shape)[()] for row in out]  # [()]: a number without axes
 
     @cached_property

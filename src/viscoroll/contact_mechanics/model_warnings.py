@@ -9,7 +9,7 @@ moment over P R.
 """
 
 from bisect import bisect
-from collections.abc import Iterable
+from collections.abc import Collection
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -181,7 +181,7 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
         warn_of_model("; ".join(causes))
 
 
-def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
+def warn_of_unmeasured_starts(share: float, records: Collection[Measured]) -> bool:
     """Warn of motions of a run that start outside the measured band of a material, once for each
     material in a process; workers do not warn.
 
@@ -191,14 +191,13 @@ def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool
         warning.
     Returns whether a warning was given, a bool.
     """
-    data = list(records)
-    if share <= 0.0 or is_worker() or _warned_records.issuperset(data):
+    if share <= 0.0 or is_worker() or _warned_records.issuperset(records):
         return False
-    _warned_records.update(data)
+    _warned_records.update(records)
     warn_of_model(
         f"the rolling moment M is extrapolated: {share:.1%} of the motions start outside the "
         "frequencies at which the material was measured "
-        f"(at the medians of the inputs {'; '.join(map(str, data))})"
+        f"(at the medians of the inputs {'; '.join(map(str, records))})"
     )
     return True
 
@@ -326,7 +325,7 @@ def _is_too_slow(material: Any, alpha: float, u: float, gamma: float, j: float) 
         return False
     if material is None and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
         return True
-    lower_ends, slow = _slow_starts(alpha if material is None else material, gamma, j)
+    lower_ends, slow = _slow_starts(alpha if material is None else None, material, gamma, j)
     # the entry at or below u; below the table the first one
     return slow[max(bisect(lower_ends, u) - 1, 0)]
 
@@ -361,7 +360,7 @@ def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> 
         slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)
     several = scene.material_array
     faults: list[str] = []
-    for worst in {int(np.argmax(measure)) for measure in (-kappa, slips, unsteady)}:
+    for worst in {np.argmax(measure) for measure in (-kappa, slips, unsteady)}:
         material = scene.material if several is None else several[examined[worst]]
         faults += _start_faults(material, *columns[:, worst].tolist(), driven)
     return list(dict.fromkeys(faults))
@@ -369,22 +368,21 @@ def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> 
 
 @lru_cache(maxsize=64)
 def _slow_starts(
-    material: float | Prony | Bodies, gamma: float, j: float
+    alpha: float | None, material: Prony | Bodies | None, gamma: float, j: float
 ) -> tuple[list[float], list[bool]]:
     """Tabulate whether a free motion that starts at kappa V is too slow for the law of steady
     rolling.
 
     The table is kept for the next call.
-    material: alpha, Prony series or bodies, not elastic, no cover.
+    alpha, material: one of both, not elastic, no cover; None for the other.
     gamma, j: parameters of the scene, dimensionless, > 0.
     Returns (kappa V, ascending, floats, dimensionless, 16 to an octave over all speeds at which the
     material relaxes; whether more than a tenth of the distance from there to rest has an error of V
     above 10 %, bools), two lists of one length.
     """
-    given = {"alpha": material} if isinstance(material, float) else {"material": material}
-    free = FreeRolling.of_scene(Parameters(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given), 0.0)
-    curve = curve_of(free.materials[0])
-    assert curve is not None  # an elastic one is never slow
+    scene = Parameters(alpha, kappa=1.0, mu=1.0, gamma=gamma, j=j, material=material)
+    free = FreeRolling.of_scene(scene, 0.0)
+    curve: Any = curve_of(free.materials[0])  # an elastic one, without a curve, is never slow
     free = replace(free, u=np.exp(curve.ln_u))
     slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.distance()
     return (free.u * free.speed).tolist(), slow.tolist()

@@ -8,7 +8,6 @@ is dimensionless unless units are named; a law is a :class:`LawTable`, the rows 
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
@@ -57,8 +56,7 @@ class ResistanceExtrema(NamedTuple):
     is_maximum: Booleans
 
 
-@dataclass(frozen=True)
-class Branches:
+class Branches(NamedTuple):
     """The curve kappa (M - G V) over u = kappa V at nodes, and its branches, on each of which it
     rises or falls throughout.
 
@@ -187,7 +185,7 @@ def branches(law: LawTable, gain: float) -> Branches:
         A gain other than 0 whose size, over the longest retardation time (elastic: 1), is not in
         :data:`_GAIN_RANGE`.
     """
-    longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
+    longest = law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0)
     if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
         low, high = (bound * longest for bound in _GAIN_RANGE)
         # in units that are 1 in a scene

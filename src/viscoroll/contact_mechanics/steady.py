@@ -37,7 +37,6 @@ import numpy as np
 from ..core import (
     Feedback,
     Floats,
-    Integers,
     Numbers,
     ParameterError,
     make_dimensionless,
@@ -263,14 +262,13 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     :func:`_polish` refines them and drops those that are none.
     """
 
-    def beyond(x: Floats, which: int) -> Floats:
+    def beyond(which: int, x: Floats) -> Floats:
         free = problem.free_rolling(x)
         return problem.slip(free) - free.slips[which]
 
     nodes = search_nodes(problem.contacts.law)
-    nodes = np.unique(
-        np.concatenate([nodes, *(find_zeros(partial(beyond, which=n), nodes) for n in range(3))])
-    )
+    zeros = [find_zeros(partial(beyond, n), nodes) for n in range(3)]
+    nodes = np.unique(np.concatenate([nodes, *zeros]))
     free = problem.free_rolling(nodes)
     low, _, high = free.slips
     off = np.abs(problem.slip(free) - 0.5 * (low + high))
@@ -475,17 +473,20 @@ def steady(
     law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
     gained = loads.gains.V or loads.gains.omega
+    # without a load every speed of elastic bodies is steady
+    neutral = law.elastic and loads.V is None and not gained
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
         refuse_beyond(law, loads.kappa * np.abs(loads.V))
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
-        rolling = states_at(law, loads, load=moving, sign=np.sign(speed), V=np.abs(speed))
-    elif loads.gains.omega:
-        rolling = scan_states(law, loads)
+        rolling = states_at(law, loads, moving, sign=np.sign(speed), V=np.abs(speed))
+        rests = loads.V == 0.0
     else:
-        rolling = _states_under_load(law, loads)
-    neutral = law.elastic and loads.given is None and not gained
-    resting = _loads_at_rest(law, loads, neutral)
+        rolling = scan_states(law, loads) if loads.gains.omega else _states_under_load(law, loads)
+        rests = is_balanced_at_rest(law, loads)
+        if neutral:  # only where the friction does not suffice, which the result has to say
+            rests &= np.abs(loads.torque) > loads.mu
+    resting = np.flatnonzero(rests)
     if resting.size:
         rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
@@ -495,29 +496,10 @@ def steady(
         if gained or law.elastic or law.coupled is not None
         else branches(law, 0.0).maximum
     )
-    reasons = Diagnosis(loads, rolling, number=count, maximum=maximum, elastic=neutral)
-    found = Steady(loads, existing, reasons, scale, labels)
+    reasons = Diagnosis(loads, scale, rolling, number=count, maximum=maximum, elastic=neutral)
+    found = Steady(existing, reasons, labels)
     warn_of_contact(on_slope, np.asarray(found.V))
     return found
-
-
-def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
-    """Return the indices of the loads under which the cylinder is examined at rest, V = omega = 0,
-    (m,).
-
-    law : table of the material.
-    loads : the loads, dimensionless.  Chosen are those with V = 0 where V was given, else those
-        in equilibrium at rest (:func:`is_balanced_at_rest`): of half-spaces force + torque = 0, of
-        a cover the balance with its traction.  Whether friction suffices is considered only on a
-        table of the coupled solution.
-    neutral : whether every speed is steady without a load, as for elastic bodies; without a given V
-        rest is then chosen only where |torque| exceeds mu, so that the friction does not suffice,
-        which the result has to say.
-    """
-    if loads.V is not None:
-        return (loads.V == 0.0).nonzero()[0]
-    rests = is_balanced_at_rest(law, loads)
-    return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
 def _states_under_load(law: LawTable, loads: Loads) -> States:

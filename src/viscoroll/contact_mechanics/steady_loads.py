@@ -38,7 +38,7 @@ from ..core import (
     described_error,
     slope_tan_cos,
 )
-from ..laws import FIELDS, LawTable
+from ..laws import LawTable
 from .contact_table import Contacts, refuse_overflow
 from .parameters import Parameters
 from .rolling_resistance import find_zeros, speed_nodes
@@ -213,8 +213,6 @@ def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -
 #: rounding of a balance of force and torque at rest, relative to the sum of both: some units in the
 #: last place
 _BALANCE_ROUNDING = 4e-15
-#: fields of the kernels that :class:`Shear` holds
-_REACTION = "reaction_half_space", "reaction_cylinder", "excess_half_space", "excess_cylinder"
 
 
 class Shear(NamedTuple):
@@ -281,7 +279,8 @@ def shear_at(contacts: Contacts, V: Floats) -> Shear:
     """
     fields = np.zeros((4, V.size))
     if contacts.law.cover is not None:
-        fields = contacts.fields(V, 0.0, *_REACTION)
+        names = "reaction_half_space", "reaction_cylinder", "excess_half_space", "excess_cylinder"
+        fields = contacts.fields(V, 0.0, *names)
     return Shear(fields[:2], fields[2:], contacts)
 
 
@@ -494,15 +493,15 @@ def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     from ..kernels.law.spline_law import look_up
 
     law, kappa, mu = contacts
-    # moments are times kappa
-    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
-    fields = dict(zip(FIELDS, found.T, strict=True))
+    # columns in the order of law_rows.FIELDS; moments are times kappa
+    columns = look_up(law.record.table, kappa * V, 2.0 * kappa * delta).T
+    Q_over_mu, M_half_space, M_cylinder, *_, work_half_space, work_cylinder = columns
     omega_over_V = 1.0 + delta
-    half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
-    cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V
+    half_space = M_half_space + 0.5 * work_half_space
+    cylinder = M_cylinder + 0.5 * work_cylinder / omega_over_V
     # powers divided by V, times kappa
     lost = half_space + omega_over_V * cylinder
-    supplied = fields["M_half_space"] + omega_over_V * fields["M_cylinder"]
-    supplied += kappa * mu * delta * fields["Q_over_mu"]
+    supplied = M_half_space + omega_over_V * M_cylinder
+    supplied += kappa * mu * delta * Q_over_mu
     reduction = np.divide(supplied, lost, out=np.ones_like(lost), where=lost > 0.0)
     return np.clip(reduction, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa

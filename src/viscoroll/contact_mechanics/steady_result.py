@@ -77,6 +77,7 @@ class Diagnosis(NamedTuple):
     """Data for the explanation why a load has no equilibrium.
 
     loads : the loads, n of them, dimensionless.
+    scale : units of the roller, in which the sentences state their numbers.
     states : all states, whether or not the friction suffices.
     number : equilibria of each load, (n,).
     maximum : (largest kappa M, kappa V there), dimensionless; (NaN, NaN) with feedback, and for
@@ -86,22 +87,22 @@ class Diagnosis(NamedTuple):
     """
 
     loads: Loads
+    scale: Scale
     states: States
     number: Integers
     maximum: tuple[float, float]
     elastic: bool
 
-    def text(self, scale: Scale) -> Any:
+    def text(self) -> Any:
         """Return for each load the reason why it has no equilibrium, "" where it has one.
 
-        scale: units of the roller, in which the sentences state their numbers.
         Returns a str for one load, else an array of str (dtype object) in the shape of the loads.
         """
         shape = self.loads.shape
-        found = ["" if number else self._reason(n, scale) for n, number in enumerate(self.number)]
+        found = ["" if number else self._reason(n) for n, number in enumerate(self.number)]
         return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
-    def _reason(self, n: int, scale: Scale) -> str:
+    def _reason(self, n: int) -> str:
         """Return why a load has no equilibrium, as a sentence without a full stop.
 
         It is the first of these that applies: friction (the balance needs more than mu, or mu
@@ -109,19 +110,20 @@ class Diagnosis(NamedTuple):
         without resistance; a feedback that balances the moment at no speed; a load above the
         largest moment.
         n : index of a load without equilibrium in the flattened loads.
-        scale : units of the roller, in which the sentence states its numbers but Q and mu, which
-            are dimensionless; of a scene all are.
+        The numbers are in the units of the roller but Q and mu, which are dimensionless; of a scene
+        all are.
         """
         name, moment, of_load, of_speed = (
             ("force + torque/R", "rolling moment divided by R", " N/m", " m/s")
-            if scale.si
+            if self.scale.si
             else ("force + torque", "rolling moment", "", "")
         )
         loads = self.loads
-        load, speed = (np.broadcast_to(scale[of], loads.shape).ravel()[n] for of in ("force", "V"))
+        load, speed = (
+            np.broadcast_to(self.scale[of], loads.shape).ravel()[n] for of in ("force", "V")
+        )
         at_rest = loads.force[n] + loads.torque[n]
         mu = loads.mu[n]
-        kappa = loads.kappa[n]
         total = at_rest * load
         states = self.states.rows[:, self.states.load == n]
         if states.size:  # the state that asks for the least friction
@@ -144,7 +146,7 @@ class Diagnosis(NamedTuple):
                 f"{name} = {total:.6g}{of_load} is not 0, but elastic bodies roll without "
                 "resistance: no speed is steady"
             )
-        M, V = (value / kappa for value in self.maximum)
+        M, V = np.divide(self.maximum, loads.kappa[n])
         if np.isnan(M):
             return (
                 f"at no speed that was searched the {moment} equals {name} ({total:.6g}{of_load} "
@@ -286,9 +288,7 @@ class Steady(Equilibria):
     _rows = "V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"
     _ranges = ("V",)
 
-    def __init__(
-        self, loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None
-    ) -> None:
+    def __init__(self, states: States, reasons: Diagnosis, labels: Labels | None) -> None:
         """Pack steady states, one after another, into arrays over loads and equilibria, in the
         units of the roller.
 
@@ -298,25 +298,23 @@ class Steady(Equilibria):
         further axis of two, ``count`` has the axes of the loads alone, an int for one load.  With V
         given, force or torque is what the balance needs.
 
-        loads : the loads, n of them, dimensionless.
         states : :class:`.steady_states.States` that exist, sorted by load and |V|, dimensionless.
         reasons : :class:`Diagnosis`, data of the loads without equilibrium; its ``number`` is the
-            number of states of each load.
-        scale : units of the roller, which the result has.
+            number of states of each load, its ``loads`` are the loads, dimensionless, and its
+            ``scale`` the units of the roller, which the result has.
         labels : labels of the arguments of the call, or None; arrays of the scene may add axes in
             front of them.
         """
-        number = states.load
-        count = reasons.number
+        loads, scale, _, count, *_ = reasons
         fields = states.rows[: Field.FAST]
         V, _, Q, M_half_space, M_cylinder, _, omega = fields
-        force, torque = loads.at_speed(number, V, omega)
+        force, torque = loads.at_speed(states.load, V, omega)
         # with V given: the balance of the axis, and that of the cylinder
         if loads.given == "torque":
             force = M_half_space - Q
         elif loads.given == "force":
             torque = M_cylinder + Q
-        grip = 1.0 - np.abs(Q) / loads.mu[number]
+        grip = 1.0 - np.abs(Q) / loads.mu[states.load]
         # those of _FIELDS, V to omega from the states, then those of the states from FAST on
         rows = [*fields, M_half_space + M_cylinder, grip, force, torque, *states.rows[Field.FAST :]]
         padded = pad(rows, count, loads.shape)
@@ -332,7 +330,6 @@ class Steady(Equilibria):
         # without traction, divided by P R
         self._free = padded[-2:]
         self.reasons = reasons
-        self.scale = scale
 
     def keys(self) -> Iterable[str]:
         """Return the names of the fields, which are attributes and are read by ``result[name]``
@@ -365,11 +362,11 @@ class Steady(Equilibria):
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
         )
-        R, P = (append_axis(self.scale[name]) for name in ("R", "P"))
+        R, P, P_R = (append_axis(self.reasons.scale[name]) for name in ("R", "P", "M"))
         moving = V != 0.0
         # (omega R - V) Q = V delta Q; at V = 0, where delta is infinite or a limit, omega R Q
         slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
-        free_half_space, free_cylinder = self._free * append_axis(self.scale["M"])
+        free_half_space, free_cylinder = self._free * P_R
         half_space = V * free_half_space / R
         cylinder = omega * free_cylinder
         # what shear changes in the moments is taken from friction
@@ -403,7 +400,7 @@ class Steady(Equilibria):
         """Why there is no equilibrium; "" where there is one.  Of arrays of loads an array of
         strings.
         """
-        return self.reasons.text(self.scale)
+        return self.reasons.text()
 
     #: as :attr:`reason`
     message = reason

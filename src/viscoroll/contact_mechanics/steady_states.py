@@ -285,7 +285,7 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     if contacts.law.gridded:
         rows[Field.BETA] = np.nan
     speed = V
-    if np.minimum.reduce(V, initial=_LEAST_SPEED) < _LEAST_SPEED:
+    if (V < _LEAST_SPEED).any():
         speed = np.maximum(V, _LEAST_SPEED)
         rows[Field.DQ_DV :] = contacts.fields(speed, delta, *_ROWS[Field.DQ_DV - 2 :])
     # a slope over omega times V is one over the creepage

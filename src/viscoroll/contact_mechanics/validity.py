@@ -174,14 +174,14 @@ class Steadiness(Assumption):
         """
         sentence = "there is no motion"
         if np.size(value):
-            most = float(np.max(value))
+            most = np.max(value)
             worst = (
                 free.take(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
             )
             sentence = (
                 _describe_free(worst)
                 if motion_share is None
-                else _describe_motion(worst, most, float(np.mean(motion_share)))
+                else _describe_motion(worst, most, np.mean(motion_share))
             )
         created = cls(value <= STEADY_LIMIT, value, sentence)
         created.free = free
@@ -267,7 +267,7 @@ def _describe_free(free: FreeRolling) -> str:
     which speed on it is not; for an elastic cylinder alone that it never stops.
     """
     speed, time, length = free.units
-    value = float(free.unsteadiness)
+    value = free.unsteadiness
     most = free.reach(STEADY_LIMIT)
     whole = free.distance()
     text = f"unsteadiness (relative error of V) {value:.2g}, up to {STEADY_LIMIT} is allowed: "
@@ -291,7 +291,7 @@ def _describe_free(free: FreeRolling) -> str:
         )
         end = f"down to {most.speed:.2g}{speed}, {reached}"
         text += f"10 % {end if most.speed else 'to the end'}"
-    if start.speed > LARGEST_LOSS * float(free.u * free.speed):
+    if start.speed > LARGEST_LOSS * (free.u * free.speed):
         return text + "; after a long standstill the cylinder would not leave its indentation"
     loss = f"{start.speed:.2g}{speed} of speed and {start.distance:.2g}{length} of distance"
     return f"{text}; a start after a long standstill costs {loss}"
@@ -362,10 +362,8 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     every creepage.  The sentence states the thickness of the thinnest cover, and the limit for the
     cover whose limit is lowest.
     """
-    cover = scene.cover
-    assert cover is not None
+    cover: Any = scene.cover
     half = 0.5 * lam
-    thickness = float(np.min(cover.thinnest))
     # (half contact length over thickness that is allowed, thickness) of each layer
     layers = [
         (np.interp(nu, _NU, _MOST_THETA), h)
@@ -375,8 +373,8 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     holds = np.all([half / h <= limit for limit, h in layers], axis=0)
     theta = half / cover.thinnest
     sentence = (
-        f"the layer is {thickness:.3g} times as thick as the contact at rest is long; half the "
-        f"contact length is up to {largest(theta):.2g} times the thickness, up to "
+        f"the layer is {np.min(cover.thinnest):.3g} times as thick as the contact at rest is long; "
+        f"half the contact length is up to {largest(theta):.2g} times the thickness, up to "
         f"{min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
         "coupled=False, where the contact sticks in front and slips behind; the table of the "
         "coupled solution, from which states with traction are otherwise, needs no limit"
@@ -404,12 +402,10 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     Raises ParameterError for kappa |V| above 1e300, shapes that do not broadcast, and a layer too
     thin for its law.
     """
-    cover = scene.cover
-    assert cover is not None
     by_base, by_cylinder, free, star = evaluate_contact(
         scene.uncoupled,
         np.abs(V),
-        creep=np.zeros(()),
+        np.zeros(()),
         creep_is_omega=False,
         names=("excess_half_space", "excess_cylinder", "delta_0", "delta_star"),
     ).values()
@@ -418,7 +414,8 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     with np.errstate(divide="ignore"):
         value = limited / (1.0 - limited**4) ** 0.25
     effect = np.minimum(value, 1.0)
-    error = stated_error(float(np.min(cover.thinnest))) + _LEAST_SHEAR_ERROR
+    cover: Any = scene.cover
+    error = stated_error(np.min(cover.thinnest)) + _LEAST_SHEAR_ERROR
     error = error + _SHEAR_ERROR * effect
     levers = np.abs(free) + 0.5 * star * effect
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
