@@ -172,10 +172,9 @@ class Validity(NamedTuple):
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return (title, rows) of the printed report."""
-        items = self._asdict().items()
         rows = [
             SummaryRow(name, f"{assumption.word:<4} {assumption.sentence}")
-            for name, assumption in items
+            for name, assumption in self._asdict().items()
         ]
         return "Assumptions of the model, and whether they hold", rows
 
@@ -409,7 +408,7 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
         return UNKNOWN.measured
     ends = np.min(frequency, initial=np.inf), HIGHEST_RATE * np.max(frequency, initial=0.0)
     sentence = "the contact needs the moduli from {:.2g} to {:.2g} rad/s".format(*ends)
-    holds = np.full(np.shape(frequency), True)[()]
+    holds: Any = True
     error = moment_error(frequency, records)
     for body, data in records.items():
         low, high = data.transit_band

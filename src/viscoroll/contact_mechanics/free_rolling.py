@@ -80,12 +80,12 @@ class Curve:
         octaves = relaxing + 2 * _MARGIN
         points = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1)
         points -= math.log(longest)
+        points -= _MARGIN * math.log(2.0)
         # The formulas of the modes at 1/(2 zeta) need no kernel of contacts, which a warning need
-        # not compile.
-        # half_rates is zeta: points are even in ln 1/(2 zeta), but for the margin.
-        half_rates = 0.5 * np.exp(_MARGIN * math.log(2.0) - points)
-        (_, h_over_zeta, half_space, cylinder), _, N = evaluate_by_modes(material, half_rates)
-        self.ln_u = points - _MARGIN * math.log(2.0) - 0.5 * np.log1p(2.0 * h_over_zeta)
+        # not compile.  The points are even in ln 1/(2 zeta).
+        zeta = 0.5 * np.exp(-points)
+        (_, h_over_zeta, half_space, cylinder), _, N = evaluate_by_modes(material, zeta)
+        self.ln_u = points - 0.5 * np.log1p(2.0 * h_over_zeta)
         # above: u = lam/(2 zeta) with lam = (1 + 2 h/zeta)^(-1/2).  M is kappa times the moment
         u = np.exp(self.ln_u)
         M = u * (half_space + cylinder)
@@ -310,7 +310,7 @@ class FreeRolling:
         gamma = np.nan if scene.gamma is None else scene.gamma
         with np.errstate(over="ignore"):
             u = scene.kappa * np.abs(V) * unit
-            g = gamma * unit * unit / (1.0 + np.asarray(scene.j))
+            g = gamma * unit * unit / (1.0 + scene.j)
         u, index = np.broadcast_arrays(u, index, g)[:2]
         speed = 1.0 / (scene.kappa * unit)
         return cls(materials, index, u, g, speed, time=unit, length=1.0 / scene.kappa)
@@ -338,11 +338,11 @@ class FreeRolling:
             arrays are broadcast to u and indexed alike.
         Raises IndexError of numpy.
         """
-        arrays = ("index", "u", "g", "speed", "time", "length")
-        return replace(
-            self,
-            **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays},
-        )
+        parts = {
+            name: np.broadcast_to(getattr(self, name), self.u.shape)[index]
+            for name in ("index", "u", "g", "speed", "time", "length")
+        }
+        return replace(self, **parts)
 
     def _evaluate(
         self, function: Callable[..., Sequence[Floats]], elastic: Sequence[float], *more: Any

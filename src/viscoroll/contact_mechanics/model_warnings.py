@@ -213,8 +213,7 @@ def warn_of_speeds(roller: Roller, V0: Any, V: Any) -> None:
     V: speeds at the output times, m/s, (times,) or (n, times), NaN where a motion ended before;
         None where they were not computed: then the start speeds are compared alone.
     """
-    data = roller.body_data
-    if data is None or data.covered_speeds is None:
+    if roller.body_data is None:
         return
     fastest = np.abs(0.0 if V0 is None else V0)
     if V is not None:

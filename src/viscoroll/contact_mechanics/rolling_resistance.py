@@ -186,8 +186,8 @@ def branches(law: LawTable, gain: float) -> Branches:
         :data:`_GAIN_RANGE`.
     """
     longest = law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0)
-    if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
-        low, high = (bound * longest for bound in _GAIN_RANGE)
+    low, high = (bound * longest for bound in _GAIN_RANGE)
+    if gain and not low <= abs(gain) <= high:
         # in units that are 1 in a scene
         raise described_error(
             "gain on V",

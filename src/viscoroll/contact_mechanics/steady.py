@@ -115,8 +115,10 @@ class _ScanProblem(NamedTuple):
         x: log2(kappa V), (n,).
         """
         V = np.exp2(x) / self.contacts.kappa
-        names = "M_half_space", "M_cylinder", "delta_minus", "delta_0", "delta_plus"
-        fields = self.contacts.fields(V, self.contacts.free_creep(V), *names)
+        free = self.contacts.free_creep(V)
+        fields = self.contacts.fields(
+            V, free, "M_half_space", "M_cylinder", "delta_minus", "delta_0", "delta_plus"
+        )
         return _FreeRolling(V, moments=fields[:2], slips=V * fields[2:])
 
     def loads_at(self, V: Any, omega: Any) -> Floats:
@@ -192,13 +194,13 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     gains = np.reshape(loads.gains, (2, 2))
     parts = [States.none()]
     for n in range(loads.mu.size):
-        contacts = Contacts(law, loads.kappa[n], loads.mu[n])
+        contacts = loads.contacts(law, n)
         for sign in (1.0, -1.0):
             # a motion towards -x is the mirror image: its loads have the other sign, its gains stay
             load_rows = np.column_stack([sign * at_rest[:, n], gains])
             problem = _ScanProblem(contacts, load_rows)
             # of half-spaces slip follows from the speed unless the gains on omega cancel
-            by_speed = not law.moment_of_speed_alone or problem.load_rows[:, 2].sum()
+            by_speed = not law.moment_of_speed_alone or load_rows[:, 2].sum()
             x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
             rows = _polish(problem, np.exp2(x) / contacts.kappa, slip)
             free = None
@@ -466,8 +468,7 @@ def steady(
     )
     slope = given.pop("slope")
     on_slope, scene, scale = resolve_model(roller, "steady", slope=slope)
-    if type(scene.alpha) is not float:  # a float, the common case, is no array
-        refuse_arrays(roller, scene, ("alpha",), slope=slope)
+    refuse_arrays(roller, scene, ("alpha",), slope=slope)
     given = {name: make_dimensionless(name, value, scale) for name, value in given.items()}
     loads = loads_of(scene, slope=slope, **given)
     law = scene.rolling_law
@@ -492,9 +493,7 @@ def steady(
     existing = rolling.existing()
     count = np.bincount(existing.load, minlength=loads.mu.size)
     maximum = (
-        (math.nan, math.nan)
-        if gained or law.elastic or law.coupled is not None
-        else branches(law, 0.0).maximum
+        None if gained or law.elastic or law.coupled is not None else branches(law, 0.0).maximum
     )
     reasons = Diagnosis(loads, scale, rolling, number=count, maximum=maximum, elastic=neutral)
     found = Steady(existing, reasons, labels)

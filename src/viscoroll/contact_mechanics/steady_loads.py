@@ -54,10 +54,10 @@ class Gains(NamedTuple):
     force_omega omega, and torque likewise.
     """
 
-    force_V: float = 0.0
-    force_omega: float = 0.0
-    torque_V: float = 0.0
-    torque_omega: float = 0.0
+    force_V: float
+    force_omega: float
+    torque_V: float
+    torque_omega: float
 
     @property
     def V(self) -> float:
@@ -93,6 +93,10 @@ class Loads(NamedTuple):
     mu: Floats
     j: Floats
     V: Floats | None = None
+
+    def contacts(self, law: LawTable, load: Any) -> Contacts:
+        """Return the contacts of a ``law`` at kappa and mu of some loads, ``load``: their index."""
+        return Contacts(law, self.kappa[load], self.mu[load])
 
     def at_speed(
         self, load: Any, V: Floats, omega: Any = 0.0, sign: Any = 1.0
@@ -265,8 +269,9 @@ def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
     """
     if contacts.law.cover is None:
         return creep
-    names = "delta_minus", "delta_plus", "delta_star", "delta_0"
-    low, high, star, free = contacts.fields(V, 0.0, *names)
+    low, high, star, free = contacts.fields(
+        V, 0.0, "delta_minus", "delta_plus", "delta_star", "delta_0"
+    )
     # d = 1 and -1 at the onsets: their mean is delta_0 + c delta_star
     return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
@@ -279,8 +284,14 @@ def shear_at(contacts: Contacts, V: Floats) -> Shear:
     """
     fields = np.zeros((4, V.size))
     if contacts.law.cover is not None:
-        names = "reaction_half_space", "reaction_cylinder", "excess_half_space", "excess_cylinder"
-        fields = contacts.fields(V, 0.0, *names)
+        fields = contacts.fields(
+            V,
+            0.0,
+            "reaction_half_space",
+            "reaction_cylinder",
+            "excess_half_space",
+            "excess_cylinder",
+        )
     return Shear(fields[:2], fields[2:], contacts)
 
 
@@ -301,7 +312,7 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     rounding = _rounding(law, loads)
     parts = []
     for n, kappa in enumerate(loads.kappa):
-        contacts = Contacts(law, kappa, loads.mu[n])
+        contacts = loads.contacts(law, n)
         for sign in (1.0, -1.0):
             left = partial(_torque_left_by_speed, contacts, loads, n, sign)
             zeros = find_zeros(left, nodes, rounding[n])
@@ -393,7 +404,7 @@ def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     """
     if law.moment_of_speed_alone:
         return loads.force + loads.torque == 0.0
-    contacts = Contacts(law, loads.kappa, loads.mu)
+    contacts = loads.contacts(law, slice(None))
     still = np.zeros(loads.mu.size)
     left = [
         torque_left(contacts, still, sign * loads.force, sign * loads.torque)

@@ -80,8 +80,8 @@ class Diagnosis(NamedTuple):
     scale : units of the roller, in which the sentences state their numbers.
     states : all states, whether or not the friction suffices.
     number : equilibria of each load, (n,).
-    maximum : (largest kappa M, kappa V there), dimensionless; (NaN, NaN) with feedback, and for
-        elastic bodies.
+    maximum : (largest kappa M, kappa V there), dimensionless; None with feedback, for elastic
+        bodies, and on a table of the coupled solution.
     elastic : whether the bodies are elastic and no gain and no given V determines the speed, so
         that M = 0 at every speed.
     """
@@ -90,7 +90,7 @@ class Diagnosis(NamedTuple):
     scale: Scale
     states: States
     number: Integers
-    maximum: tuple[float, float]
+    maximum: tuple[float, float] | None
     elastic: bool
 
     def text(self) -> Any:
@@ -134,8 +134,10 @@ class Diagnosis(NamedTuple):
                     f"no single steady state: |Q|/load = {mu:.6g} equals mu, and {at} the cylinder "
                     "slips steadily at any omega beyond a limit; lower the loads or raise mu"
                 )
-            needed = f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}"
-            return f"{needed}, above the friction mu = {mu:.6g}: lower the loads"
+            return (
+                f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}, above the friction mu = "
+                f"{mu:.6g}: lower the loads"
+            )
         if self.elastic:
             if at_rest == 0.0:
                 return (
@@ -146,12 +148,12 @@ class Diagnosis(NamedTuple):
                 f"{name} = {total:.6g}{of_load} is not 0, but elastic bodies roll without "
                 "resistance: no speed is steady"
             )
-        M, V = np.divide(self.maximum, loads.kappa[n])
-        if np.isnan(M):
+        if self.maximum is None:
             return (
                 f"at no speed that was searched the {moment} equals {name} ({total:.6g}{of_load} "
                 "at rest)"
             )
+        M, V = np.divide(self.maximum, loads.kappa[n])
         return (
             f"|{name}| = {abs(total):.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest "
             f"{moment} (at V = {V * speed:.6g}{of_speed})"
@@ -197,13 +199,14 @@ class Equilibria(Values):
         why there is none; of several states the number of all equilibria and of the stable ones,
         and the ranges of fields.
         """
-        units = {name: unit_of(self._attributes(name)) for name in self._rows}
         if np.ndim(self.count):
             found = (
                 f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
             )
             ranges = [
-                SummaryRow(name, format_value(np.asarray(self[name])), units[name])
+                SummaryRow(
+                    name, format_value(np.asarray(self[name])), unit_of(self._attributes(name))
+                )
                 for name in self._ranges
             ]
             return f"{self._heading}, {np.size(self.count)} states", [
@@ -214,7 +217,9 @@ class Equilibria(Values):
         for n in range(int(self.count)):
             rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else self._unstable))
             rows += [
-                SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", units[name])
+                SummaryRow(
+                    f"  {name}", f"{float(self[name][n]):.6g}", unit_of(self._attributes(name))
+                )
                 for name in self._rows
             ]
         return self._heading + ("" if self.count else ": no equilibrium"), rows
@@ -349,6 +354,7 @@ class Steady(Equilibria):
         return [*self._values, "loss", "reason"]
 
     @cached_property
+    @np.errstate(invalid="ignore", divide="ignore")  # where V or the input is 0
     def loss(self) -> Loss:
         """Return the powers of each equilibrium, its coefficient of rolling resistance and its
         efficiency.
@@ -365,19 +371,17 @@ class Steady(Equilibria):
         R, P, P_R = (append_axis(self.reasons.scale[name]) for name in ("R", "P", "M"))
         moving = V != 0.0
         # (omega R - V) Q = V delta Q; at V = 0, where delta is infinite or a limit, omega R Q
-        slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
+        slip = np.where(moving, V * delta, R * omega) * Q
         free_half_space, free_cylinder = self._free * P_R
         half_space = V * free_half_space / R
         cylinder = omega * free_cylinder
         # what shear changes in the moments is taken from friction
         slip += V * (M_half_space - free_half_space) / R + omega * (M_cylinder - free_cylinder)
         whole = slip + half_space + cylinder
-        speed = np.where(moving, np.abs(V), 1.0)
         powers = np.stack([force * V, torque * omega])
         output, input_ = (np.maximum(signed, 0.0).sum(axis=0) for signed in (-powers, powers))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
-            efficiency = np.where(input_ > 0.0, output / input_, np.nan)
+        coefficient = np.where(moving, whole / np.abs(V), np.abs(Q * delta)) / P
+        efficiency = np.where(input_ > 0.0, output / input_, np.nan)
         found: Any = slip, half_space, cylinder, coefficient, efficiency
         if self._labels is not None:
             found = map(self._labels.apply, _LOSSES, found, ("equilibrium",) * len(_LOSSES))

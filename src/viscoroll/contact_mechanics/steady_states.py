@@ -125,8 +125,9 @@ class States(NamedTuple):
         rows[Field.FREE_HALF_SPACE :] = (
             answers[[Field.M_HALF_SPACE, Field.M_CYLINDER]] if free is None else free
         )
-        signed = [Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]
-        rows[[*signed, Field.FREE_HALF_SPACE, Field.FREE_CYLINDER]] *= sign
+        rows[Field.V] *= sign
+        rows[Field.Q : Field.BETA] *= sign  # and both moments
+        rows[Field.FREE_HALF_SPACE :] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
         # of the frame where V > 0: a mirror image has the same eigenvalues
         rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers, loads.gains, loads.j[load])
@@ -150,8 +151,7 @@ class States(NamedTuple):
         does not suffice, |Q| >= mu.
         """
         still = np.zeros(load.size)
-        mu = loads.mu[load]
-        contacts = Contacts(law, loads.kappa[load], mu)
+        contacts = loads.contacts(law, load)
         on_spin = loads.given != "force"
         required = loads.torque[load] if on_spin else -loads.force[load]
         if law.coupled is not None:
@@ -162,8 +162,8 @@ class States(NamedTuple):
         else:
             star, free = contacts.fields(still, 0.0, "delta_star", "delta_0")
             shear = shear_at(contacts, still)
-            Q = shear.traction(required, of_axis=1.0 - on_spin, of_spin=float(on_spin))
-            part = np.minimum(np.abs(Q) / mu, 1.0)
+            Q = shear.traction(required, of_axis=1.0 - on_spin, of_spin=on_spin)
+            part = np.minimum(np.abs(Q) / contacts.mu, 1.0)
             # delta_star (1 - sqrt(1 - |Q|/mu)) without cancellation, the creepage of Carter's
             # contact, of motion to either side
             creep = np.sign(Q) * star * part / (1.0 + np.sqrt(1.0 - part))
@@ -181,10 +181,11 @@ class States(NamedTuple):
             half_space, cylinder = over_V[1:] - slopes[1:] * over_V[0]
             gains = loads.gains
             for creep in creeps:
-                push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
-                turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
+                omega_over_V = 1.0 + creep
+                push = half_space - gains.force_V - gains.force_omega * omega_over_V
+                turn = cylinder - gains.torque_V - gains.torque_omega * omega_over_V
                 rate = of_spin * push + of_axis * turn
-                inertia = of_spin + loads.j[load] * of_axis * (1.0 + creep)
+                inertia = of_spin + loads.j[load] * of_axis * omega_over_V
                 slow = np.maximum(slow, -rate / inertia)
         rows[Field.OMEGA :] = 0.0
         rows[Field.FAST] = -np.inf
@@ -248,8 +249,9 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
         det += gains.torque_omega * axis
         spin = on_spin * a + slow * (d_cylinder - gains.torque_V)
-        det = (det + gains.force_omega * spin) / (j / unit)
-        half = 0.5 * (unit * axis + (slow * gains.torque_omega - on_spin * b) / (j / unit))
+        inertia = j / unit
+        det = (det + gains.force_omega * spin) / inertia
+        half = 0.5 * (unit * axis + (slow * gains.torque_omega - on_spin * b) / inertia)
         product = np.sqrt(np.abs(det)) * np.sqrt(slow)
         # with y = unit slow times an eigenvalue: y^2 - 2 half y + det unit slow = 0; the larger
         # root has no cancellation, and the other eigenvalue follows from the product of both
@@ -342,8 +344,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     Returns the :class:`States`, (n,), with the signs of the motion; delta and omega are NaN and
     beta is 0 where |Q| >= mu, so that the friction does not suffice.
     """
-    mu = loads.mu[load]
-    contacts = Contacts(law, loads.kappa[load], mu)
+    contacts = loads.contacts(law, load)
     force, torque = loads.at_speed(load, V, sign=sign)
     on_spin = loads.given == "torque"
     if law.coupled is not None:
@@ -354,13 +355,14 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
         rows[Field.Q] += rest
         return States.of(loads, load, sign, rows, free=losses)
     delta_0 = contacts.free_creep(V)
-    names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
-    *free, star, lam, rise = contacts.fields(V, delta_0, *names)
+    *free, star, lam, rise = contacts.fields(
+        V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
+    )
     Q = torque - free[1] if on_spin else free[0] - force
     moments: Any = free
     if law.cover is not None:
         shear = shear_at(contacts, V)
-        Q = shear.traction(Q, of_axis=1.0 - on_spin, of_spin=float(on_spin))
+        Q = shear.traction(Q, of_axis=1.0 - on_spin, of_spin=on_spin)
         moments = moments + shear.moments(Q)
     elif loads.given is None:  # V is such that both loads balance M
         M = free[0] + free[1]
@@ -368,7 +370,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
         share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
         Q = share * torque - (1.0 - share) * force
         moments = share * (force + torque), (1.0 - share) * (force + torque)
-    part = np.abs(Q) / mu
+    part = np.abs(Q) / contacts.mu
     exists = part < 1.0
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     faster = V / root
@@ -376,7 +378,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")
     # the formula of the module; for a small Q its difference is rounding, and |Q| over the slope
     # ``rise`` = dQ/ddelta at Q = 0 takes its place
-    size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
+    size = np.where(part > _SMALL_TRACTION, star - root * less_star, contacts.mu * part / rise)
     creep = creep_beyond_free(contacts, V, np.copysign(size, Q))
     rows = state_rows(contacts, V, creep + delta_0)
     # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows

@@ -174,14 +174,13 @@ class Steadiness(Assumption):
         """
         sentence = "there is no motion"
         if np.size(value):
-            most = np.max(value)
             worst = (
                 free.take(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
             )
             sentence = (
                 _describe_free(worst)
                 if motion_share is None
-                else _describe_motion(worst, most, np.mean(motion_share))
+                else _describe_motion(worst, np.max(value), np.mean(motion_share))
             )
         created = cls(value <= STEADY_LIMIT, value, sentence)
         created.free = free
@@ -285,16 +284,17 @@ def _describe_free(free: FreeRolling) -> str:
     if fine.time:  # 0 where the error is above 1 % at the start already
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
     if fine.speed:
-        reached = (
-            f"which is reached after a time of {most.time:.3g}{time}, at a distance of "
-            f"{most.left:.2g}{length} before the end"
+        end = (
+            f"down to {most.speed:.2g}{speed}, which is reached after a time of "
+            f"{most.time:.3g}{time}, at a distance of {most.left:.2g}{length} before the end"
         )
-        end = f"down to {most.speed:.2g}{speed}, {reached}"
         text += f"10 % {end if most.speed else 'to the end'}"
     if start.speed > LARGEST_LOSS * (free.u * free.speed):
         return text + "; after a long standstill the cylinder would not leave its indentation"
-    loss = f"{start.speed:.2g}{speed} of speed and {start.distance:.2g}{length} of distance"
-    return f"{text}; a start after a long standstill costs {loss}"
+    return (
+        f"{text}; a start after a long standstill costs {start.speed:.2g}{speed} of speed and "
+        f"{start.distance:.2g}{length} of distance"
+    )
 
 
 def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
@@ -307,8 +307,10 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
         it is not known, which the sentence then leaves out.
     Returns a str without a full stop.
     """
-    text = f"unsteadiness (relative error of V) up to {most:.2g}, {STEADY_LIMIT} is allowed: "
-    text += "the error of V is below 10 % "
+    text = (
+        f"unsteadiness (relative error of V) up to {most:.2g}, {STEADY_LIMIT} is allowed: "
+        "the error of V is below 10 % "
+    )
     if most <= STEADY_LIMIT:
         return text + "throughout"
     speed = f"{free.reach(STEADY_LIMIT).speed:.2g}{free.units[0]}"
@@ -426,7 +428,7 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     )
     errors = (
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
-        f"M up to {largest(error_of_M):.1g} P l0" + (beyond if most > 1.0 else "")
+        f"M up to {largest(error_of_M):.1g} P l0" + beyond * (most > 1.0)
     )
     sentence = f"shear acts back on the pressure; compared with method='coupled' {errors}"
     if scene.tabulated:
@@ -486,14 +488,14 @@ def validity(
     True
     """
     _, scene, scale = resolve_model(roller, "validity")
-    given = {"V": check_array("V", V, unit=scale)}
-    if omega is not None:
-        given["omega"] = check_array("omega", omega, unit=scale)
+    V = check_array("V", V, unit=scale)
+    spin = None
     with np.errstate(over="ignore"):
-        scaled = {name: divide_by_unit(name, array, scale[name]) for name, array in given.items()}
-    speed = scaled["V"]
-    spin = scaled.get("omega")
-    broadcast_shape(**given, **scene.numbers)
+        if omega is not None:
+            omega = check_array("omega", omega, unit=scale)
+            spin = divide_by_unit("omega", omega, scale["omega"])
+        speed = divide_by_unit("V", V, scale["V"])
+    broadcast_shape(V=V, omega=omega, **scene.numbers)
     law = scene.uncoupled  # no table is made for a report
     if scene.cover is None:
         free = FreeRolling.of_scene(law, speed)
@@ -525,9 +527,7 @@ def validity(
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
         report = report._replace(creep=assess_creep(delta, full_slip))
     if roller.body_data is not None:
-        return roller.body_data.extend_validity(
-            report, lam, V=given["V"], omega=given.get("omega"), density=density
-        )
+        return roller.body_data.extend_validity(report, lam, V, omega=omega, density=density)
     if density is not None:
         sentence = "density needs a Cylinder: a Scene has no wave speed"
         raise ParameterError("density", density, "None", sentence)
