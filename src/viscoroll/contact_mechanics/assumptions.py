@@ -406,8 +406,9 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
     """
     if not records:
         return UNKNOWN.measured
-    ends = np.min(frequency, initial=np.inf), HIGHEST_RATE * np.max(frequency, initial=0.0)
-    sentence = "the contact needs the moduli from {:.2g} to {:.2g} rad/s".format(*ends)
+    least = np.min(frequency, initial=np.inf)
+    most = HIGHEST_RATE * np.max(frequency, initial=0.0)
+    sentence = f"the contact needs the moduli from {least:.2g} to {most:.2g} rad/s"
     holds: Any = True
     error = moment_error(frequency, records)
     for body, data in records.items():

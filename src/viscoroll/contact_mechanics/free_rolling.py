@@ -163,8 +163,9 @@ class Curve:
         behind = [self._high * math.sqrt(last / level)] if last >= level else []
         ends = np.concatenate([[0.0], np.exp(falls), behind])
         below = np.abs(self.N(u)) < level
-        index = np.searchsorted(ends, u, side="right")
-        return np.where(below, ends[index - 1], ends[-1]), below
+        # the last one at or below u
+        end = ends[np.searchsorted(ends, u, "right") - 1]
+        return np.where(below, end, ends[-1]), below
 
     def work(self, u: Floats, distance: Floats, rested: Floats) -> Floats:
         """Return the work W that it takes to roll out of the indentation of a standstill; in SI
@@ -291,8 +292,10 @@ class FreeRolling:
         Raises ParameterError for a cover, whose N is not known.
         """
         scene = scene.uncoupled  # a free roller has hardly any traction
-        why = "leave this call out, as free rolling depends on the added mass N, which is not known"
-        refuse_cover(scene, why)
+        refuse_cover(
+            scene,
+            "leave this call out, as free rolling depends on the added mass N, which is not known",
+        )
         materials: Any
         unit: Any
         if scene.material_array is None:
@@ -338,11 +341,13 @@ class FreeRolling:
             arrays are broadcast to u and indexed alike.
         Raises IndexError of numpy.
         """
-        parts = {
-            name: np.broadcast_to(getattr(self, name), self.u.shape)[index]
-            for name in ("index", "u", "g", "speed", "time", "length")
-        }
-        return replace(self, **parts)
+        return replace(
+            self,
+            **{
+                name: np.broadcast_to(getattr(self, name), self.u.shape)[index]
+                for name in ("index", "u", "g", "speed", "time", "length")
+            },
+        )
 
     def _evaluate(
         self, function: Callable[..., Sequence[Floats]], elastic: Sequence[float], *more: Any
@@ -367,8 +372,7 @@ class FreeRolling:
         ends = np.searchsorted(index[order], np.arange(1, len(self.materials)))
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             for material, part in zip(self.materials, np.split(order, ends)):
-                curve = curve_of(material) if part.size else None
-                if curve is not None:
+                if part.size and (curve := curve_of(material)) is not None:
                     out[:, part] = function(curve, *(array[part] for array in arrays))
         return [row.reshape(self.u.shape)[()] for row in out]  # [()]: a number without axes
 

@@ -345,10 +345,10 @@ def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> 
     """
     arrays = np.broadcast_arrays(*np.atleast_1d(*numbers))
     count = arrays[0].size
-    examined = np.linspace(0, count - 1, min(count, _EXAMINED)).astype(np.int64)
-    columns = np.array([array[examined] for array in arrays])
-    if not examined.size:
+    if not count:
         return []
+    examined = np.linspace(0, count - 1, min(count, _EXAMINED), dtype=int)
+    columns = np.array([array[examined] for array in arrays])
     alpha, kappa, mu, gamma, j, V0, omega0 = columns
     part = 1.0 - 1.0 / alpha
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):

@@ -214,12 +214,13 @@ def speed_nodes(law: LawTable) -> Floats:
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
     high = math.ceil(-math.log2(times.min())) + _CLOSE_OCTAVES
-    parts = (
-        np.arange(low - _FAR_OCTAVES, low, _FAR_STEP),
-        np.arange(low, high, _CLOSE_STEP),
-        np.arange(high, high + _FAR_OCTAVES + _FAR_STEP, _FAR_STEP),
+    return np.concatenate(
+        [
+            np.arange(low - _FAR_OCTAVES, low, _FAR_STEP),
+            np.arange(low, high, _CLOSE_STEP),
+            np.arange(high, high + _FAR_OCTAVES + _FAR_STEP, _FAR_STEP),
+        ]
     )
-    return np.concatenate(parts)
 
 
 def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
@@ -244,13 +245,12 @@ def find_zeros(
     """
     values = function(nodes)
     signed = np.abs(values) > noise
-    _, zeros, _ = zeros_between(
+    return zeros_between(
         lambda x, _: function(x),
         nodes[None, signed],
         values[None, signed],
         np.broadcast_to(noise, nodes.shape)[signed],
-    )
-    return zeros
+    )[1]
 
 
 def zeros_between(

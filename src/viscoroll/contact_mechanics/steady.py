@@ -231,8 +231,7 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     gains = loads.gains
     total = loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
-    law = contacts.law
-    if not (law.moment_of_speed_alone and gain and total):
+    if not (contacts.law.moment_of_speed_alone and gain and total):
         return []
     # the sum of both balances without M; then that of the axis must hold with Q = +-mu
     omega = -total / gain
@@ -240,7 +239,7 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     if side * contacts.mu + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
     # the limit V -> 0 of full slip: the slowest node, at a creepage far beyond the onset
-    slowest = np.exp2(speed_nodes(law)[:1]) / contacts.kappa
+    slowest = np.exp2(speed_nodes(contacts.law)[:1]) / contacts.kappa
     rows = state_rows(contacts, slowest, 1.0 / slowest)
     spinning = States.of(loads, np.array([n]), side, rows)
     spinning.rows[[Field.V, Field.DELTA, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.OMEGA], 0] = (
@@ -273,9 +272,9 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     nodes = np.unique(np.concatenate([nodes, *zeros]))
     free = problem.free_rolling(nodes)
     low, _, high = free.slips
-    off = np.abs(problem.slip(free) - 0.5 * (low + high))
     # nodes at an onset count as partial slip in spite of rounding
-    stuck = off <= 0.5 * (high - low) * (1.0 + 1e-9)
+    half_width = 0.5 * (high - low) * (1.0 + 1e-9)
+    stuck = np.abs(problem.slip(free) - 0.5 * (low + high)) <= half_width
     # intervals with an end in partial slip, where the balance changes fast, get further nodes
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     parts = np.linspace(0.0, 1.0, _STICK_NODES)[1:-1]
@@ -292,15 +291,15 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     return found, problem.slip(problem.free_rolling(found))
 
 
-def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
+def _scan_slip(problem: _ScanProblem) -> Floats:
     """Find the states of a load by a scan over the slip, where the sum of the equations gives V
     alone.
 
     Used where the gains on omega of force and torque have the sum 0, but are not 0.
     problem : :class:`_ScanProblem`, the load and the table of its material.
-    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where
-    V > 0, unsorted; empty arrays if there is no state.  States of partial slip are zeros over the
-    slip, those of full slip follow from Q = mu or -mu.
+    Returns the rows x = log2(kappa V) and slip = omega - V, (2, states), dimensionless, in the
+    frame where V > 0, unsorted, without columns if there is no state.  States of partial slip are
+    zeros over the slip, those of full slip follow from Q = mu or -mu.
     Raises ParameterError for a gain on V out of range.
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
@@ -323,8 +322,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
         partial_slip = limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
         slip = np.concatenate([partial_slip, full[sides * full > limit]])
         found.append(np.array([np.full_like(slip, x), slip]))
-    positions, slips = np.hstack(found)
-    return positions, slips
+    return np.hstack(found)
 
 
 def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
@@ -516,11 +514,11 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():
-        allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
         raise ParameterError(
             "(force + torque/R)/load * R/l0",
             f"{total[wrong][0]:g}",
-            f"{allowed} (l0 is the contact length at rest; in a scene R = load = 1, R/l0 = kappa)",
+            f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude (l0 is the contact length at "
+            "rest; in a scene R = load = 1, R/l0 = kappa)",
         )
     if not loads.gains.V and law.elastic:
         return States.none()

@@ -67,7 +67,7 @@ class Gains(NamedTuple):
     @property
     def omega(self) -> bool:
         """Whether any gain acts on omega."""
-        return self.force_omega != 0.0 or self.torque_omega != 0.0
+        return bool(self.force_omega or self.torque_omega)
 
 
 class Loads(NamedTuple):
@@ -142,7 +142,7 @@ def loads_of(
     or a feedback.
     """
     given = None if V is None else _given_load(slope, force=force, torque=torque)
-    tangent = slope_tan_cos(slope)[0]
+
     push, *of_force = _split_feedback("force", force)
     turn, *of_torque = _split_feedback("torque", torque)
     arrays = {
@@ -151,7 +151,7 @@ def loads_of(
         "kappa": scene.kappa,
         "mu": scene.mu,
         "j": scene.j,
-        "slope": tangent,
+        "slope": slope_tan_cos(slope)[0],
     }
     if V is not None:
         arrays["V"] = check_array("V", V)
@@ -160,8 +160,8 @@ def loads_of(
     shape = broadcast_shape(**arrays, gamma=scene.gamma)
     # the rows are in the order of the fields of Loads; slope counts for the shape alone before
     arrays["force"] = push + arrays.pop("slope")
-    rows = broadcast_rows(arrays.values(), shape)
-    return Loads(shape, Gains(*of_force, *of_torque), given, *rows)
+    gains = Gains(*of_force, *of_torque)
+    return Loads(shape, gains, given, *broadcast_rows(arrays.values(), shape))
 
 
 def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
@@ -176,8 +176,11 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     of gains.
     """
     if callable(value) or isinstance(value, Schedule):
-        found = "is a Schedule" if isinstance(value, Schedule) else "is a function"
-        raise described_error(name, found, "a number, an array or a Feedback")
+        raise described_error(
+            name,
+            "is a Schedule" if isinstance(value, Schedule) else "is a function",
+            "a number, an array or a Feedback",
+        )
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):
@@ -224,16 +227,16 @@ class Shear(NamedTuple):
 
     factors : a (module) of base and cylinder, (2, n), dimensionless.
     excesses : e (module) of base and cylinder, (2, n), dimensionless.
-    contacts : the law, at a kappa and a mu, numbers or (n,).
+    mu : coefficient of friction, a number or (n,).
     """
 
     factors: Floats
     excesses: Floats
-    contacts: Contacts
+    mu: Any
 
     def moments(self, Q: Floats) -> Floats:
         """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
-        return -Q * (self.factors + self.excesses * (np.abs(Q) / self.contacts.mu))
+        return -Q * (self.factors + self.excesses * (np.abs(Q) / self.mu))
 
     def traction(self, rest: Floats, of_axis: float = 0.0, of_spin: float = 0.0) -> Floats:
         """Return the Q of equilibrium, (n,), from a sum of the balances (module).
@@ -254,7 +257,7 @@ class Shear(NamedTuple):
             raise _cancelling_error(of_spin, of_axis)
         # the root of Q (factor + excess |Q|/mu) = rest that is continuous with excess = 0, in a
         # form without cancellation
-        steep = 4.0 * excess * np.sign(factor) / self.contacts.mu * np.abs(rest)
+        steep = 4.0 * excess * np.sign(factor) / self.mu * np.abs(rest)
         root = np.sqrt(np.maximum(factor * factor + steep, 0.0))
         return 2.0 * rest / (factor + np.copysign(root, factor))
 
@@ -292,7 +295,7 @@ def shear_at(contacts: Contacts, V: Floats) -> Shear:
             "excess_half_space",
             "excess_cylinder",
         )
-    return Shear(fields[:2], fields[2:], contacts)
+    return Shear(fields[:2], fields[2:], contacts.mu)
 
 
 def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:

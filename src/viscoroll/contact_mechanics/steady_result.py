@@ -122,9 +122,8 @@ class Diagnosis(NamedTuple):
         load, speed = (
             np.broadcast_to(self.scale[of], loads.shape).ravel()[n] for of in ("force", "V")
         )
-        at_rest = loads.force[n] + loads.torque[n]
         mu = loads.mu[n]
-        total = at_rest * load
+        total = (loads.force[n] + loads.torque[n]) * load
         states = self.states.rows[:, self.states.load == n]
         if states.size:  # the state that asks for the least friction
             V, Q = states[[Field.V, Field.Q], np.abs(states[Field.Q]).argmin()]
@@ -139,7 +138,7 @@ class Diagnosis(NamedTuple):
                 f"{mu:.6g}: lower the loads"
             )
         if self.elastic:
-            if at_rest == 0.0:
+            if total == 0.0:
                 return (
                     "no isolated steady speed: elastic bodies roll without resistance, so "
                     "every V is steady"
@@ -200,9 +199,6 @@ class Equilibria(Values):
         and the ranges of fields.
         """
         if np.ndim(self.count):
-            found = (
-                f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
-            )
             ranges = [
                 SummaryRow(
                     name, format_value(np.asarray(self[name])), unit_of(self._attributes(name))
@@ -210,7 +206,11 @@ class Equilibria(Values):
                 for name in self._ranges
             ]
             return f"{self._heading}, {np.size(self.count)} states", [
-                SummaryRow("equilibria", found),
+                SummaryRow(
+                    "equilibria",
+                    f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them "
+                    "stable",
+                ),
                 *ranges,
             ]
         rows = [SummaryRow("reason", str(self.reason))] if self.reason else []
@@ -377,10 +377,10 @@ class Steady(Equilibria):
         cylinder = omega * free_cylinder
         # what shear changes in the moments is taken from friction
         slip += V * (M_half_space - free_half_space) / R + omega * (M_cylinder - free_cylinder)
-        whole = slip + half_space + cylinder
         powers = np.stack([force * V, torque * omega])
         output, input_ = (np.maximum(signed, 0.0).sum(axis=0) for signed in (-powers, powers))
-        coefficient = np.where(moving, whole / np.abs(V), np.abs(Q * delta)) / P
+        lost = slip + half_space + cylinder
+        coefficient = np.where(moving, lost / np.abs(V), np.abs(Q * delta)) / P
         efficiency = np.where(input_ > 0.0, output / input_, np.nan)
         found: Any = slip, half_space, cylinder, coefficient, efficiency
         if self._labels is not None:

@@ -374,8 +374,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     exists = part < 1.0
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     faster = V / root
-    rolling = contacts.free_creep(faster)
-    less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")
+    less_star, less_lam = contacts.fields(faster, contacts.free_creep(faster), "delta_star", "lam")
     # the formula of the module; for a small Q its difference is rounding, and |Q| over the slope
     # ``rise`` = dQ/ddelta at Q = 0 takes its place
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, contacts.mu * part / rise)

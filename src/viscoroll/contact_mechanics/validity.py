@@ -211,8 +211,7 @@ class Steadiness(Assumption):
         (2,)
         """
         chosen = self._replace(holds=self.holds[last], value=self.value[last])
-        chosen.free = self.free
-        chosen.motion_share = self.motion_share
+        vars(chosen).update(vars(self))
         return chosen
 
     @cached_property
@@ -349,7 +348,7 @@ def stated_error(thickness: float) -> float:
     Returns the error, dimensionless, interpolated between the thicknesses 0.2 to 5 at which it was
     measured; the value of the nearest end outside of them.
     """
-    return float(np.interp(thickness, _THICKNESS, _ERROR))
+    return np.interp(thickness, _THICKNESS, _ERROR)
 
 
 def assess_cover(scene: Parameters, lam: Any) -> Assumption:
@@ -417,8 +416,7 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
         value = limited / (1.0 - limited**4) ** 0.25
     effect = np.minimum(value, 1.0)
     cover: Any = scene.cover
-    error = stated_error(np.min(cover.thinnest)) + _LEAST_SHEAR_ERROR
-    error = error + _SHEAR_ERROR * effect
+    error = stated_error(np.min(cover.thinnest)) + _LEAST_SHEAR_ERROR + _SHEAR_ERROR * effect
     levers = np.abs(free) + 0.5 * star * effect
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     most = largest(value)
@@ -529,6 +527,7 @@ def validity(
     if roller.body_data is not None:
         return roller.body_data.extend_validity(report, lam, V, omega=omega, density=density)
     if density is not None:
-        sentence = "density needs a Cylinder: a Scene has no wave speed"
-        raise ParameterError("density", density, "None", sentence)
+        raise ParameterError(
+            "density", density, "None", "density needs a Cylinder: a Scene has no wave speed"
+        )
     return report
