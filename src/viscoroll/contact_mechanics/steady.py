@@ -191,7 +191,7 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     :func:`.rolling_resistance.branches` refuses.
     """
     at_rest = np.array([loads.force, loads.torque])
-    gains = np.reshape(loads.gains, (2, 2))
+    gains = np.reshape(loads.gains, (2, 2))  # of force and of torque, each on V and omega
     parts = [States.none()]
     for n in range(loads.mu.size):
         contacts = loads.contacts(law, n)
