@@ -172,10 +172,9 @@ class Validity(NamedTuple):
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return (title, rows) of the printed report."""
-        items = self._asdict().items()
         rows = [
             SummaryRow(name, f"{assumption.word:<4} {assumption.sentence}")
-            for name, assumption in items
+            for name, assumption in self._asdict().items()
         ]
         return "Assumptions of the model, and whether they hold", rows
 
@@ -340,9 +339,7 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
     )
 
 
-def assess_inertia(
-    wave_ratio: Any, unknown: Sequence[str] = (), decides: bool = True
-) -> Assumption:
+def assess_inertia(wave_ratio: Any, unknown: Sequence[str], decides: bool) -> Assumption:
     """Compare the speed with the shear wave speed: far below it the inertia of the deforming bodies
     is negligible.
 
@@ -409,9 +406,10 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
     """
     if not records:
         return UNKNOWN.measured
-    ends = np.min(frequency, initial=np.inf), HIGHEST_RATE * np.max(frequency, initial=0.0)
-    sentence = "the contact needs the moduli from {:.2g} to {:.2g} rad/s".format(*ends)
-    holds = np.full(np.shape(frequency), True)[()]
+    least = np.min(frequency, initial=np.inf)
+    most = HIGHEST_RATE * np.max(frequency, initial=0.0)
+    sentence = f"the contact needs the moduli from {least:.2g} to {most:.2g} rad/s"
+    holds: Any = True
     error = moment_error(frequency, records)
     for body, data in records.items():
         low, high = data.transit_band

@@ -18,10 +18,9 @@ The own time of a material is a unit of time in which its slow time
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -76,61 +75,54 @@ class Curve:
         series = total_series(material)
         self.modes = (series.J, series.T)
         self.alpha = series.alpha
-        shortest = series.tau[-1]
         longest = series.T[0]
-        octaves = math.ceil(math.log2(longest / shortest * math.sqrt(self.alpha))) + 2 * _MARGIN
-        points = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(
-            longest
-        )
+        relaxing = math.ceil(math.log2(longest / series.tau[-1] * math.sqrt(self.alpha)))
+        octaves = relaxing + 2 * _MARGIN
+        points = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1)
+        points -= math.log(longest)
+        points -= _MARGIN * math.log(2.0)
         # The formulas of the modes at 1/(2 zeta) need no kernel of contacts, which a warning need
-        # not compile.
-        # half_rates is zeta: points are even in ln 1/(2 zeta), but for the margin.
-        half_rates = 0.5 * np.exp(_MARGIN * math.log(2.0) - points)
-        (_, h_over_zeta, half_space, cylinder), _, N = evaluate_by_modes(material, half_rates)
-        self.ln_u = points - _MARGIN * math.log(2.0) - 0.5 * np.log1p(2.0 * h_over_zeta)
+        # not compile.  The points are even in ln 1/(2 zeta).
+        zeta = 0.5 * np.exp(-points)
+        (_, h_over_zeta, half_space, cylinder), _, N = evaluate_by_modes(material, zeta)
+        self.ln_u = points - 0.5 * np.log1p(2.0 * h_over_zeta)
         # above: u = lam/(2 zeta) with lam = (1 + 2 h/zeta)^(-1/2).  M is kappa times the moment
         u = np.exp(self.ln_u)
         M = u * (half_space + cylinder)
-        self._low = float(u[0])
-        self._high = float(u[-1])
-        self._M_high = float(M[-1])
-        self._N, self._u2_over_M = CubicSpline(self.ln_u, N), CubicSpline(self.ln_u, u * u / M)
+        self._low = u[0]
+        self._high = u[-1]
+        self._M_high = M[-1]
+        self._N = CubicSpline(self.ln_u, N)
+        self._u2_over_M = CubicSpline(self.ln_u, u * u / M)
         # integrals of du/M and of u du/M, over ln u
-        self._time, self._distance = (
-            CubicSpline(self.ln_u, u / M).antiderivative(),
-            self._u2_over_M.antiderivative(),
-        )
+        self._time = CubicSpline(self.ln_u, u / M).antiderivative()
+        self._distance = self._u2_over_M.antiderivative()
         self._N_slope = self._N(self.ln_u[0], 1)
         self._first_distance = u[0] ** 2 / M[0]  # from u[0] to rest, where M is proportional to u
 
-    def _locate(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return (ln u, limited to the range of the splines; u divided by the end that it is
-        beyond, else 1), each in the shape of u; the second is below 1 for u below the splines,
-        above 1 for u above.
+    def _locate(self, u: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return ln u, limited to the range of the splines; u divided by the lower end where it is
+        below it, else 1; u divided by the upper end where it is above it, else 1; each in the
+        shape of u.
         """
         inside = np.clip(u, self._low, self._high)
-        return np.log(inside), u / inside
+        beyond = u / inside
+        return np.log(inside), np.minimum(beyond, 1.0), np.maximum(beyond, 1.0)
 
     def N(self, u: Floats) -> Floats:
         """Return N, of either sign, at u = kappa |V| >= 0, any shape, in that shape, dimensionless;
         below the splines linear in u, above proportional to u^-2.
         """
-        ln_u, beyond = self._locate(u)
+        ln_u, below, above = self._locate(u)
         # at the first point the slope over ln u is u dN/du: N is linear in u below
-        return (self._N(ln_u) + self._N_slope * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(
-            beyond, 1.0
-        ) ** 2
+        return (self._N(ln_u) + self._N_slope * (below - 1.0)) / above**2
 
     def M(self, u: Floats) -> Floats:
         """Return kappa M >= 0 at u, any shape, in that shape, dimensionless; below the splines
         proportional to u, above to 1/u; 0 at u = 0.
         """
-        ln_u, beyond = self._locate(u)
-        return (
-            np.exp(2.0 * ln_u)
-            / self._u2_over_M(ln_u)
-            * np.where(beyond < 1.0, beyond, 1.0 / beyond)
-        )
+        ln_u, below, above = self._locate(u)
+        return np.exp(2.0 * ln_u) / self._u2_over_M(ln_u) * (below / above)
 
     def time(self, u: Floats) -> Floats:
         """Return the time from u, any shape, down to the lower end of the splines, in that shape; 0
@@ -139,20 +131,18 @@ class Curve:
         Only differences count: the time from u to a lower u2 above that end is time(u) - time(u2),
         and that to rest is infinite.
         """
-        ln_u, beyond = self._locate(u)
+        ln_u, _, above = self._locate(u)
         # above the splines M falls as 1/u, so that the integral of du/M grows as u^2
-        return self._time(ln_u) + 0.5 * self._high / self._M_high * (
-            np.maximum(beyond, 1.0) ** 2 - 1.0
-        )
+        return self._time(ln_u) + 0.5 * self._high / self._M_high * (above**2 - 1.0)
 
     def distance(self, u: Floats) -> Floats:
         """Return the distance from u, any shape, to rest, in that shape and in units of l0; below
         the splines proportional to u, 0 at u = 0.
         """
-        ln_u, beyond = self._locate(u)
+        ln_u, below, above = self._locate(u)
         # above the splines M falls as 1/u, so that the integral of u du/M grows as u^3
-        above = self._high**2 / (3.0 * self._M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
-        return (self._first_distance + self._distance(ln_u)) * np.minimum(beyond, 1.0) + above
+        further = self._high**2 / (3.0 * self._M_high) * (above**3 - 1.0)
+        return (self._first_distance + self._distance(ln_u)) * below + further
 
     def limit_speed(self, u: Floats, level: float) -> tuple[Floats, Booleans]:
         """Return the speed at which |N| reaches a level in free rolling.
@@ -168,14 +158,14 @@ class Curve:
         )
         # roots at which |N| rises as u falls: a motion leaves the level there
         falls = roots[self._N(roots) * self._N(roots, 1) < 0.0]
-        last = float(np.abs(self._N(self.ln_u[-1])))
-        behind = (
-            [self._high * math.sqrt(last / level)] if last >= level else []
-        )  # where N falls as u^-2
+        last = np.abs(self._N(self.ln_u[-1]))
+        # where N falls as u^-2
+        behind = [self._high * math.sqrt(last / level)] if last >= level else []
         ends = np.concatenate([[0.0], np.exp(falls), behind])
         below = np.abs(self.N(u)) < level
-        index = np.searchsorted(ends, u, side="right")
-        return np.where(below, ends[index - 1], ends[-1]), below
+        # the last one at or below u
+        end = ends[np.searchsorted(ends, u, "right") - 1]
+        return np.where(below, end, ends[-1]), below
 
     def work(self, u: Floats, distance: Floats, rested: Floats) -> Floats:
         """Return the work W that it takes to roll out of the indentation of a standstill; in SI
@@ -201,11 +191,8 @@ class Curve:
             # may be too short for; and the part of the creep that the standstill was too short for
             L = np.minimum(2.0 * u * T, longest)
             fresh = np.exp(-rested / T)
-            W += (
-                0.5
-                * J
-                * ((1.0 - fresh) * np.log(np.hypot(1.0, _MEMORY * L)) - fresh / (1.0 + 2.0 / L))
-            )
+            crept = (1.0 - fresh) * np.log(np.hypot(1.0, _MEMORY * L))
+            W += 0.5 * J * (crept - fresh / (1.0 + 2.0 / L))
         grown = -np.expm1(-rested / self.modes[1][0])
         return np.maximum(W - grown * math.log(self.alpha) / (8.0 * self.alpha), 0.0)
 
@@ -278,7 +265,8 @@ class FreeRolling:
         gamma.
     speed, time, length : factors, which broadcast with u: u times ``speed``, a time in the own unit
         times ``time`` and a distance in l0 times ``length`` are in the units of the caller.
-    units : names of these units of speed, time and length; empty for dimensionless ones.
+    units : names of these units of speed, time and length, with a blank in front; empty for
+        dimensionless ones.
     """
 
     materials: Sequence[float | Prony]
@@ -304,8 +292,10 @@ class FreeRolling:
         Raises ParameterError for a cover, whose N is not known.
         """
         scene = scene.uncoupled  # a free roller has hardly any traction
-        why = "leave this call out, as free rolling depends on the added mass N, which is not known"
-        refuse_cover(scene, why)
+        refuse_cover(
+            scene,
+            "leave this call out, as free rolling depends on the added mass N, which is not known",
+        )
         materials: Any
         unit: Any
         if scene.material_array is None:
@@ -322,19 +312,11 @@ class FreeRolling:
             index = np.arange(unit.size)
         gamma = np.nan if scene.gamma is None else scene.gamma
         with np.errstate(over="ignore"):
-            # + 0 index: in the shape of the materials too
-            u = np.asarray(scene.kappa * np.abs(V) * unit + 0.0 * index)
-            g = gamma * unit * unit / (1.0 + np.asarray(scene.j))
+            u = scene.kappa * np.abs(V) * unit
+            g = gamma * unit * unit / (1.0 + scene.j)
         u, index = np.broadcast_arrays(u, index, g)[:2]
-        return cls(
-            materials=materials,
-            index=index,
-            u=u,
-            g=g,
-            speed=1.0 / (scene.kappa * unit),
-            time=unit,
-            length=1.0 / scene.kappa,
-        )
+        speed = 1.0 / (scene.kappa * unit)
+        return cls(materials, index, u, g, speed, time=unit, length=1.0 / scene.kappa)
 
     def scaled(self, scale: Scale) -> FreeRolling:
         """Return the same states, whose results are in m/s, s and m.
@@ -344,10 +326,13 @@ class FreeRolling:
         """
         if not scale.si:
             return self
-        speed = self.speed * scale["V"]
-        time = self.time * scale["t"]
-        length = self.length * scale["x"]
-        return replace(self, speed=speed, time=time, length=length, units=("m/s", "s", "m"))
+        return replace(
+            self,
+            speed=self.speed * scale["V"],
+            time=self.time * scale["t"],
+            length=self.length * scale["x"],
+            units=(" m/s", " s", " m"),
+        )
 
     def take(self, index: tuple[Any, ...]) -> FreeRolling:
         """Return some of the states, as a new object of the same materials and units.
@@ -356,28 +341,13 @@ class FreeRolling:
             arrays are broadcast to u and indexed alike.
         Raises IndexError of numpy.
         """
-        arrays = ("index", "u", "g", "speed", "time", "length")
         return replace(
             self,
-            **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays},
+            **{
+                name: np.broadcast_to(getattr(self, name), self.u.shape)[index]
+                for name in ("index", "u", "g", "speed", "time", "length")
+            },
         )
-
-    def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
-        """Yield each material that occurs, and which states it has, so that a curve is evaluated
-        once for all of them.
-
-        Yields (alpha or series in its own time; index of numpy that selects its states in the
-        flattened arrays: a slice of all for a single material, else integers (states of this
-        material,)).  A material without states is left out, unless it is the only one.
-        """
-        if len(self.materials) == 1:
-            yield self.materials[0], slice(None)
-            return
-        order = np.argsort(self.index, axis=None, kind="stable")
-        ends = np.searchsorted(self.index.ravel()[order], np.arange(len(self.materials) + 1))
-        for material, (first, last) in zip(self.materials, pairwise(ends), strict=True):
-            if last > first:
-                yield material, order[first:last]
 
     def _evaluate(
         self, function: Callable[..., Sequence[Floats]], elastic: Sequence[float], *more: Any
@@ -392,18 +362,18 @@ class FreeRolling:
         Returns a list of the arrays in the shape of u; numbers if u has no axes.  Overflow gives
         infinity, and NaN where g is NaN, without warnings.
         """
-        out = np.empty((len(elastic), self.u.size))
-        arrays = [np.broadcast_to(array, self.u.shape).ravel() for array in (self.u, self.g, *more)]
+        out = np.full((self.u.size, len(elastic)), elastic).T
+        index, *arrays = (
+            np.broadcast_to(array, self.u.shape).ravel()
+            for array in (self.index, self.u, self.g, *more)
+        )
+        # the states of each material, for one evaluation of its curve
+        order = np.argsort(index, kind="stable")
+        ends = np.searchsorted(index[order], np.arange(1, len(self.materials)))
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            for material, part in self._groups():
-                curve = curve_of(material)
-                values: Any = (
-                    elastic
-                    if curve is None
-                    else function(curve, *(array[part] for array in arrays))
-                )
-                for row, value in zip(out, values, strict=True):
-                    row[part] = value
+            for material, part in zip(self.materials, np.split(order, ends)):
+                if part.size and (curve := curve_of(material)) is not None:
+                    out[:, part] = function(curve, *(array[part] for array in arrays))
         return [row.reshape(self.u.shape)[()] for row in out]  # [()]: a number without axes
 
     @cached_property
@@ -454,13 +424,12 @@ class FreeRolling:
             end = np.empty(u.size)
             below = np.empty(u.size, bool)
             # the unsteadiness is g |N|: limit_speed takes one level of |N|, so a call for each g
-            levels, group = np.unique(g, return_inverse=True)
-            for n, value in enumerate(levels):
-                part = group == n if levels.size > 1 else slice(None)
+            for value in np.unique(g):
+                part = g == value
                 end[part], below[part] = curve.limit_speed(u[part], level / value)
             # where the part is empty, u stands for its end, so that time and distance are 0
             start = np.where(below, end, u)
-            left = curve.distance(np.where(below, end, u))
+            left = curve.distance(start)
             time = np.where(start > 0.0, curve.time(u) - curve.time(start), np.inf)
             distance = np.where(below, curve.distance(u) - left, 0.0)
             # times and distances of the curve are those of g = 1, and in inverse proportion to g

@@ -8,9 +8,8 @@ coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m
 moment over P R.
 """
 
-import math
 from bisect import bisect
-from collections.abc import Iterable
+from collections.abc import Collection
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -75,17 +74,6 @@ _EXAMINED = 256
 _warned_records: set[Measured] = set()
 
 
-def _warn(text: str) -> None:
-    """Give a :class:`ModelWarning` at the caller's line outside the package; in worker processes do
-    nothing.
-
-    text: the message.
-    Returns None.
-    """
-    if not is_worker():
-        warn_of_model(text)
-
-
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
     """Give one :class:`ModelWarning` of several faults, at the caller's line outside the package;
     none in worker processes.
@@ -96,8 +84,8 @@ def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
     report: the call that reports each assumption, as "validity(V).small_contact", for the message.
     Returns None.
     """
-    if faults:
-        _warn(
+    if faults and not is_worker():
+        warn_of_model(
             f"the model does not hold for this {subject}: {'; '.join(faults)}.  {report} reports "
             "each assumption"
         )
@@ -190,10 +178,10 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
         )
     if causes:
         _warned_records.update(records)
-        _warn("; ".join(causes))
+        warn_of_model("; ".join(causes))
 
 
-def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
+def warn_of_unmeasured_starts(share: float, records: Collection[Measured]) -> bool:
     """Warn of motions of a run that start outside the measured band of a material, once for each
     material in a process; workers do not warn.
 
@@ -203,14 +191,13 @@ def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool
         warning.
     Returns whether a warning was given, a bool.
     """
-    data = list(records)
-    if share <= 0.0 or is_worker() or _warned_records.issuperset(data):
+    if share <= 0.0 or is_worker() or _warned_records.issuperset(records):
         return False
-    _warned_records.update(data)
-    _warn(
+    _warned_records.update(records)
+    warn_of_model(
         f"the rolling moment M is extrapolated: {share:.1%} of the motions start outside the "
         "frequencies at which the material was measured "
-        f"(at the medians of the inputs {'; '.join(map(str, data))})"
+        f"(at the medians of the inputs {'; '.join(map(str, records))})"
     )
     return True
 
@@ -226,8 +213,7 @@ def warn_of_speeds(roller: Roller, V0: Any, V: Any) -> None:
     V: speeds at the output times, m/s, (times,) or (n, times), NaN where a motion ended before;
         None where they were not computed: then the start speeds are compared alone.
     """
-    data = roller.body_data
-    if data is None or data.covered_speeds is None:
+    if roller.body_data is None:
         return
     fastest = np.abs(0.0 if V0 is None else V0)
     if V is not None:
@@ -252,32 +238,24 @@ def warn_of_start(
     driven: whether something drives the motions, or they are rolled with the added mass N; slowness
         is not a fault then.
     """
-    wave_speed = None if roller.body_data is None else roller.body_data.wave_speed
-    if wave_speed is not None:
+    data = roller.body_data
+    if data is not None and data.wave_speed is not None:
         V, omega = (0.0 if speed is None else np.abs(speed) for speed in start)
-        if float(np.max(np.maximum(V, omega * roller.body_data.R), initial=0.0)) > wave_speed:
+        if np.max(np.maximum(V, omega * data.R), initial=0.0) > data.wave_speed:
             _warn_of_faults([_FASTER_THAN_WAVES], "motion", "validity() of cylinder or result")
+    numbers = [*(getattr(scene, name) for name in PARAMETERS), V0, omega0]
     if type(V0) is type(omega0) is float and not scene.shape:
-        material = scene.alpha if scene.material is None else scene.material
-        faults = _start_faults(
-            material,
-            scene.kappa,
-            mu=scene.mu,
-            gamma=scene.gamma,
-            j=scene.j,
-            V0=V0,
-            omega0=omega0,
-            driven=driven,
-        )
+        faults = _start_faults(scene.material, *numbers, driven)
     else:
-        faults = _worst_start_faults(scene, V0, omega0, driven)
-    if roller.body_data is not None:
-        faults += _absurd_sizes(roller.body_data)
+        faults = _worst_start_faults(scene, numbers, driven)
+    if data is not None:
+        faults += _absurd_sizes(data)
     _warn_of_faults(faults, "motion", "validity() of scene or result")
 
 
 def _start_faults(
     material: Any,
+    alpha: float,
     kappa: float,
     mu: float,
     gamma: float,
@@ -291,9 +269,9 @@ def _start_faults(
     The faults are kappa below 1; full slip with |omega0 - V0| >= |V0| where M is not small beside
     the friction; and a free motion whose error of V exceeds 10 % on more than a tenth of its
     distance, judged at the start speed or at that at which it begins to roll, whichever is larger.
-    material: alpha (a float), Prony series, bodies or cover of the roller; a cover is never too
-        slow, since its N is not known.
-    kappa, mu, gamma, j: parameters of the scene, dimensionless.
+    material: Prony series, bodies or cover of the roller, None of one relaxation time; a cover is
+        never too slow, since its N is not known.
+    alpha, kappa, mu, gamma, j: parameters of the scene, dimensionless.
     V0, omega0: start speeds, dimensionless, any sign; rest is no fault.
     driven: whether something drives the motion, or it is rolled with the added mass N; it may be
         slow then.
@@ -301,13 +279,12 @@ def _start_faults(
     arguments; an empty list where there is no fault.
     """
     faults: list[str] = []
-    one_time = type(material) is float
-    part = 1.0 - 1.0 / (material if one_time else material.alpha)
+    part = 1.0 - 1.0 / alpha
     if kappa < LEAST_KAPPA:
         faults.append(NOT_SMALL)
     if abs(omega0 - V0) >= _CREEP * abs(V0) and _LARGEST_M * part > _LEAST_M_OVER_MU * mu * kappa:
         fastest = max(abs(V0), abs(omega0))
-        if fastest > 0.0 and (not one_time or part * fastest > _LEAST_M_OVER_MU * mu):
+        if fastest > 0.0 and (material is not None or part * fastest > _LEAST_M_OVER_MU * mu):
             faults.append(
                 "it starts in full slip at a creepage of order 1, and while it slides its rolling "
                 "moment is uncertain: it is computed with the speed of the axis for both bodies"
@@ -318,7 +295,7 @@ def _start_faults(
         not driven
         and type(material) is not Cover
         and u > 0.0
-        and _is_too_slow(material, u, gamma, j)
+        and _is_too_slow(material, alpha, u, gamma, j)
     ):
         faults.append(
             "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more "
@@ -328,52 +305,50 @@ def _start_faults(
     return faults
 
 
-def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
+def _is_too_slow(material: Any, alpha: float, u: float, gamma: float, j: float) -> bool:
     """Return whether a free motion from a speed is too slow for the law of steady rolling.
 
     It is where the error of V exceeds 10 % on more than a tenth of its distance.  Bounds of N
     decide most motions: the table of :func:`_slow_starts` takes a second where its kernels are not
     compiled yet.
-    material: alpha (a float), Prony series or bodies, no cover; an elastic one is never too slow.
+    material: Prony series or bodies, no cover, None of one relaxation time; an elastic one is never
+        too slow.
     u: kappa |V| at the start, dimensionless, > 0.
-    gamma, j: parameters of the scene, dimensionless.
+    alpha, gamma, j: parameters of the scene, dimensionless.
     Returns a bool; where the bounds do not decide, that of the next lower speed of the table, 16 to
     an octave.
     """
-    one_time = type(material) is float
     ratio = u * u * (1.0 + j)
-    scale = gamma * (1.0 - 1.0 / (material if one_time else material.alpha))
+    scale = gamma * (1.0 - 1.0 / alpha)
     if ratio >= _FAST * scale:
         return False
-    if one_time and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
+    if material is None and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
         return True
-    lower_ends, slow = _slow_starts(material, gamma, j)
+    lower_ends, slow = _slow_starts(alpha if material is None else None, material, gamma, j)
     # the entry at or below u; below the table the first one
     return slow[max(bisect(lower_ends, u) - 1, 0)]
 
 
-def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
+def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> list[str]:
     """Return the faults of the model in those motions of an ensemble, three at most, that are worst
     by simple bounds: of the smallest kappa, of the largest loss in full slip, and of the largest
     unsteadiness.
 
-    scene: dimensionless parameters of the roller, of which material (or alpha), kappa, mu, gamma
-        (not None) and j are read, numbers or arrays (n,).
-    V0, omega0: start speeds, dimensionless, any sign, numbers or arrays (n,); n may be 0.
+    scene: dimensionless parameters of the roller, of which the material is read.
+    numbers: alpha, kappa, mu, gamma and j of the scene, and the start speeds V0 and omega0,
+        dimensionless, any sign, numbers or arrays (n,); n may be 0.
     driven: whether something drives the motions, or they are rolled with the added mass N; slowness
         is not a fault then.
     Returns the sentences of :func:`_start_faults`, each once; an empty list where these motions
     have no fault, or there are none.  Of more than :data:`_EXAMINED` motions that many, evenly
     spaced, are compared by the bounds.
     """
-    arrays = [
-        np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)
-    ]
-    count = math.prod(np.broadcast_shapes(*(array.shape for array in arrays)))
-    examined = np.linspace(0, count - 1, min(count, _EXAMINED)).astype(np.int64)
-    columns = np.array([np.broadcast_to(array, (count,))[examined] for array in arrays])
-    if not examined.size:
+    arrays = np.broadcast_arrays(*np.atleast_1d(*numbers))
+    count = arrays[0].size
+    if not count:
         return []
+    examined = np.linspace(0, count - 1, min(count, _EXAMINED), dtype=int)
+    columns = np.array([array[examined] for array in arrays])
     alpha, kappa, mu, gamma, j, V0, omega0 = columns
     part = 1.0 - 1.0 / alpha
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
@@ -382,37 +357,31 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
         u = kappa * np.maximum(np.abs(V0), np.abs(V0 + j * omega0) / (1.0 + j))
         unsteady = np.where(u > 0.0, gamma * part / (1.0 + j) / u**2, 0.0)
         slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)
+    several = scene.material_array
     faults: list[str] = []
-    for worst in {int(np.argmax(measure)) for measure in (-kappa, slips, unsteady)}:
-        material: Any = (
-            scene.material
-            if scene.material_array is None
-            else scene.material_array[examined[worst]]
-        )
-        alpha, *others = columns[:, worst].tolist()
-        arguments: list[Any] = [alpha if material is None else material, *others, driven]
-        faults += _start_faults(*arguments)
+    for worst in {np.argmax(measure) for measure in (-kappa, slips, unsteady)}:
+        material = scene.material if several is None else several[examined[worst]]
+        faults += _start_faults(material, *columns[:, worst].tolist(), driven)
     return list(dict.fromkeys(faults))
 
 
 @lru_cache(maxsize=64)
 def _slow_starts(
-    material: float | Prony | Bodies, gamma: float, j: float
+    alpha: float | None, material: Prony | Bodies | None, gamma: float, j: float
 ) -> tuple[list[float], list[bool]]:
     """Tabulate whether a free motion that starts at kappa V is too slow for the law of steady
     rolling.
 
     The table is kept for the next call.
-    material: alpha, Prony series or bodies, not elastic, no cover.
+    alpha, material: one of both, not elastic, no cover; None for the other.
     gamma, j: parameters of the scene, dimensionless, > 0.
     Returns (kappa V, ascending, floats, dimensionless, 16 to an octave over all speeds at which the
     material relaxes; whether more than a tenth of the distance from there to rest has an error of V
     above 10 %, bools), two lists of one length.
     """
-    given = {"alpha": material} if isinstance(material, float) else {"material": material}
-    free = FreeRolling.of_scene(Parameters(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given), 0.0)
-    curve = curve_of(free.materials[0])
-    assert curve is not None  # an elastic one is never slow
+    scene = Parameters(alpha, kappa=1.0, mu=1.0, gamma=gamma, j=j, material=material)
+    free = FreeRolling.of_scene(scene, 0.0)
+    curve: Any = curve_of(free.materials[0])  # an elastic one, without a curve, is never slow
     free = replace(free, u=np.exp(curve.ln_u))
     slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.distance()
     return (free.u * free.speed).tolist(), slow.tolist()

@@ -8,10 +8,9 @@ is dimensionless unless units are named; a law is a :class:`LawTable`, the rows 
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,10 +24,10 @@ from .parameters import Roller, refuse_arrays, resolve_model
 _CLOSE_OCTAVES = 15
 #: octaves of u beyond these with wide spacing: the curve has at most one simple extremum there
 _FAR_OCTAVES = 446
-#: nodes in an octave, closely spaced
-_CLOSE_NODES = 16
-#: nodes in an octave, widely spaced
-_FAR_NODES = 2
+#: octaves between nodes, closely spaced
+_CLOSE_STEP = 1.0 / 16.0
+#: octaves between nodes, widely spaced
+_FAR_STEP = 0.5
 #: relative distance in u within which an extremum replaces other nodes
 _SEPARATION = 1e-6
 #: least size of kappa times a load, other than 0, for which the nodes have a crossing
@@ -39,8 +38,6 @@ MOST_LOAD = 1e80
 _GAIN_RANGE = (1e-40, 1e8)
 #: distance from a zero at which it is found, relative and absolute: rounding
 _ZERO_TOLERANCE = {"xrtol": 1e-15, "xatol": 1e-16}
-
-Function = Callable[[Floats], Floats]
 
 
 class ResistanceExtrema(NamedTuple):
@@ -59,8 +56,7 @@ class ResistanceExtrema(NamedTuple):
     is_maximum: Booleans
 
 
-@dataclass(frozen=True)
-class Branches:
+class Branches(NamedTuple):
     """The curve kappa (M - G V) over u = kappa V at nodes, and its branches, on each of which it
     rises or falls throughout.
 
@@ -70,29 +66,20 @@ class Branches:
     resistance : kappa (M - G V) at the nodes, (n,).
     extremum : whether a node is a local extremum of the curve, (n,).
     gain : G.
-    ends : indices of the nodes at the ends of the branches, (branches + 1,).
     """
 
     u: Floats
     resistance: Floats
     extremum: Booleans
     gain: float
-    ends: list[int]
 
-    @cached_property
-    def curve(self) -> Any:
-        """The nodes as the record that kernels take."""
-        from ..kernels.law.law_functions import LoadCurve
-
-        return LoadCurve(self.u, self.resistance, self.extremum, self.gain)
-
-    @cached_property
+    @property
     def maximum(self) -> tuple[float, float]:
         """Return (largest value of the curve at a node, u of that node, of equal ones the first),
         floats; without a gain that is the maximum of kappa M, for elastic bodies 0.
         """
-        n = int(np.argmax(self.resistance))
-        return float(self.resistance[n]), float(self.u[n])
+        n = self.resistance.argmax()
+        return self.resistance[n], self.u[n]
 
     def locate_loads(self, load: Floats) -> tuple[Integers, Integers]:
         """Locate the intervals between nodes in which the curve takes given values, as brackets for
@@ -110,23 +97,21 @@ class Branches:
         indices = []
         nodes = []
         tolerance = EXTREMUM_RTOL * np.abs(load)
-        for first, last in pairwise(self.ends):
-            values = self.resistance[first : last + 1]
-            rising = values[-1] > values[0]
-            low, high = (values[0], values[-1]) if rising else (values[-1], values[0])
-            inside = (load > low) & (load < high)
-            if self.extremum[first]:
-                inside &= np.abs(load - values[0]) > tolerance
-            if self.extremum[last]:
-                inside |= np.abs(load - values[-1]) <= tolerance
+        for first, last in pairwise([0, *np.flatnonzero(self.extremum), self.u.size - 1]):
             # searchsorted needs rising values: a falling branch is searched with the other sign
-            indices.append(index := inside.nonzero()[0])
-            above = (
-                values.searchsorted(load[index], "right")
-                if rising
-                else (-values).searchsorted(-load[index])
-            )
-            nodes.append(first + np.minimum(np.maximum(above - 1, 0), last - first - 1))
+            rising = self.resistance[last] > self.resistance[first]
+            sign = 1.0 if rising else -1.0
+            values = sign * self.resistance[first : last + 1]
+            wanted = sign * load
+            inside = (wanted > values[0]) & (wanted < values[-1])
+            if self.extremum[first]:
+                inside &= np.abs(wanted - values[0]) > tolerance
+            if self.extremum[last]:
+                inside |= np.abs(wanted - values[-1]) <= tolerance
+            index = np.flatnonzero(inside)
+            above = values.searchsorted(wanted[index], "right" if rising else "left")
+            indices.append(index)
+            nodes.append(first + np.clip(above - 1, 0, last - first - 1))
         return np.concatenate(indices), np.concatenate(nodes)
 
 
@@ -175,14 +160,12 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     refuse_arrays(roller, scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None
-    if law.elastic:
-        return ResistanceExtrema(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
     found = branches(law, 0.0)
-    V = found.u[found.extremum] / scene.kappa
-    M = found.resistance[found.extremum] / scene.kappa
-    warn_of_contact(roller, V * scale["V"])
+    V = found.u[found.extremum] / scene.kappa * scale["V"]
+    M = found.resistance[found.extremum] / scene.kappa * scale["M"]
+    warn_of_contact(roller, V)
     # M rises from 0: the first extremum is a maximum, and both kinds alternate
-    return ResistanceExtrema(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
+    return ResistanceExtrema(V, M, is_maximum=np.arange(V.size) % 2 == 0)
 
 
 @lru_cache(maxsize=16)
@@ -202,9 +185,9 @@ def branches(law: LawTable, gain: float) -> Branches:
         A gain other than 0 whose size, over the longest retardation time (elastic: 1), is not in
         :data:`_GAIN_RANGE`.
     """
-    longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
-    if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
-        low, high = (bound * longest for bound in _GAIN_RANGE)
+    longest = law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0)
+    low, high = (bound * longest for bound in _GAIN_RANGE)
+    if gain and not low <= abs(gain) <= high:
         # in units that are 1 in a scene
         raise described_error(
             "gain on V",
@@ -217,9 +200,7 @@ def branches(law: LawTable, gain: float) -> Branches:
     for at in flat:
         u = u[np.abs(u - at) > _SEPARATION * at]
     u = np.union1d(u, flat)
-    is_flat = np.isin(u, flat)
-    ends = [0, *np.flatnonzero(is_flat).tolist(), u.size - 1]
-    return Branches(u=u, resistance=_curve(law, gain, u)[0], extremum=is_flat, gain=gain, ends=ends)
+    return Branches(u, _curve(law, gain, u)[0], extremum=np.isin(u, flat), gain=gain)
 
 
 def speed_nodes(law: LawTable) -> Floats:
@@ -233,13 +214,13 @@ def speed_nodes(law: LawTable) -> Floats:
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low = math.floor(-math.log2(times.max())) - _CLOSE_OCTAVES
     high = math.ceil(-math.log2(times.min())) + _CLOSE_OCTAVES
-    ends = low - _FAR_OCTAVES, low, high, high + _FAR_OCTAVES
-    densities = _FAR_NODES, _CLOSE_NODES, _FAR_NODES
-    parts = [
-        np.linspace(start, stop, (stop - start) * density, endpoint=False)
-        for (start, stop), density in zip(pairwise(ends), densities, strict=True)
-    ]
-    return np.concatenate([*parts, ends[-1:]])
+    return np.concatenate(
+        [
+            np.arange(low - _FAR_OCTAVES, low, _FAR_STEP),
+            np.arange(low, high, _CLOSE_STEP),
+            np.arange(high, high + _FAR_OCTAVES + _FAR_STEP, _FAR_STEP),
+        ]
+    )
 
 
 def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
@@ -249,7 +230,9 @@ def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
     return pure_rolling_fields(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
 
 
-def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
+def find_zeros(
+    function: Callable[[Floats], Floats], nodes: Floats, noise: Floats | float = 0.0
+) -> Floats:
     """Find the zeros of a function between nodes, including pairs of zeros between neighbouring
     nodes, as :func:`zeros_between` does.
 
@@ -262,13 +245,12 @@ def find_zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -
     """
     values = function(nodes)
     signed = np.abs(values) > noise
-    _, zeros, _ = zeros_between(
+    return zeros_between(
         lambda x, _: function(x),
         nodes[None, signed],
         values[None, signed],
         np.broadcast_to(noise, nodes.shape)[signed],
-    )
-    return zeros
+    )[1]
 
 
 def zeros_between(

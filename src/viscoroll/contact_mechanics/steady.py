@@ -37,7 +37,6 @@ import numpy as np
 from ..core import (
     Feedback,
     Floats,
-    Integers,
     Numbers,
     ParameterError,
     make_dimensionless,
@@ -116,12 +115,11 @@ class _ScanProblem(NamedTuple):
         x: log2(kappa V), (n,).
         """
         V = np.exp2(x) / self.contacts.kappa
-        delta_0 = self.contacts.free_creep(V)
-        names = "M_half_space", "M_cylinder", "delta_minus", "delta_plus"
-        fields = self.contacts.fields(V, delta_0, *names)
-        return _FreeRolling(
-            V=V, moments=fields[:2], slips=V * np.array([fields[2], delta_0 + 0.0 * V, fields[3]])
+        free = self.contacts.free_creep(V)
+        fields = self.contacts.fields(
+            V, free, "M_half_space", "M_cylinder", "delta_minus", "delta_0", "delta_plus"
         )
+        return _FreeRolling(V, moments=fields[:2], slips=V * fields[2:])
 
     def loads_at(self, V: Any, omega: Any) -> Floats:
         """Return force and torque at the speeds V and omega, numbers or (n,), as two rows: (2,) or
@@ -192,31 +190,25 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     Raises ParameterError where the gains on omega add to 0, for a gain on V that
     :func:`.rolling_resistance.branches` refuses.
     """
-    gains = loads.gains
-    gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
+    at_rest = np.array([loads.force, loads.torque])
+    gains = np.reshape(loads.gains, (2, 2))  # of force and of torque, each on V and omega
     parts = [States.none()]
     for n in range(loads.mu.size):
-        # columns of the rows of force and torque: at rest, gain on V, gain on omega
-        at_rest = np.array([[loads.force[n]], [loads.torque[n]]])
-        contacts = Contacts(law, loads.kappa[n], loads.mu[n])
+        contacts = loads.contacts(law, n)
         for sign in (1.0, -1.0):
             # a motion towards -x is the mirror image: its loads have the other sign, its gains stay
-            problem = _ScanProblem(contacts, np.hstack([sign * at_rest, gained]))
+            load_rows = np.column_stack([sign * at_rest[:, n], gains])
+            problem = _ScanProblem(contacts, load_rows)
             # of half-spaces slip follows from the speed unless the gains on omega cancel
-            by_speed = not law.moment_of_speed_alone or problem.load_rows[:, 2].sum()
+            by_speed = not law.moment_of_speed_alone or load_rows[:, 2].sum()
             x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
             rows = _polish(problem, np.exp2(x) / contacts.kappa, slip)
-            count = rows.shape[1]
             free = None
             if law.coupled is not None:
                 free = moments_of_losses(contacts, rows[Field.V], rows[Field.DELTA])
             elif law.cover is not None:
                 free = problem.free_rolling(np.log2(contacts.kappa * rows[Field.V])).moments
-            parts.append(
-                States.of(
-                    loads, np.full(count, n), sign=np.full(count, sign), answers=rows, free=free
-                )
-            )
+            parts.append(States.of(loads, np.full(rows.shape[1], n), sign, rows, free))
         parts += _spinning_at_rest(contacts, loads, n)
     return States.joined(*parts)
 
@@ -239,8 +231,7 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     gains = loads.gains
     total = loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
-    law = contacts.law
-    if not (law.moment_of_speed_alone and gain and total):
+    if not (contacts.law.moment_of_speed_alone and gain and total):
         return []
     # the sum of both balances without M; then that of the axis must hold with Q = +-mu
     omega = -total / gain
@@ -248,9 +239,9 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     if side * contacts.mu + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
     # the limit V -> 0 of full slip: the slowest node, at a creepage far beyond the onset
-    slowest = np.exp2(speed_nodes(law)[:1]) / contacts.kappa
+    slowest = np.exp2(speed_nodes(contacts.law)[:1]) / contacts.kappa
     rows = state_rows(contacts, slowest, 1.0 / slowest)
-    spinning = States.of(loads, np.array([n]), np.array([side]), rows)
+    spinning = States.of(loads, np.array([n]), side, rows)
     spinning.rows[[Field.V, Field.DELTA, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.OMEGA], 0] = (
         0.0,
         side * math.inf,
@@ -272,26 +263,22 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     :func:`_polish` refines them and drops those that are none.
     """
 
-    def beyond(x: Floats, which: int) -> Floats:
+    def beyond(which: int, x: Floats) -> Floats:
         free = problem.free_rolling(x)
         return problem.slip(free) - free.slips[which]
 
     nodes = search_nodes(problem.contacts.law)
-    nodes = np.unique(
-        np.concatenate([nodes, *(find_zeros(partial(beyond, which=n), nodes) for n in range(3))])
-    )
+    zeros = [find_zeros(partial(beyond, n), nodes) for n in range(3)]
+    nodes = np.unique(np.concatenate([nodes, *zeros]))
     free = problem.free_rolling(nodes)
     low, _, high = free.slips
-    off = np.abs(problem.slip(free) - 0.5 * (low + high))
     # nodes at an onset count as partial slip in spite of rounding
-    stuck = off <= 0.5 * (high - low) * (1.0 + 1e-9)
+    half_width = 0.5 * (high - low) * (1.0 + 1e-9)
+    stuck = np.abs(problem.slip(free) - 0.5 * (low + high)) <= half_width
     # intervals with an end in partial slip, where the balance changes fast, get further nodes
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
-    fine = (
-        nodes[within, None]
-        + np.linspace(0.0, 1.0, _STICK_NODES)[1:-1] * np.diff(nodes)[within, None]
-    )
-    nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
+    parts = np.linspace(0.0, 1.0, _STICK_NODES)[1:-1]
+    nodes = np.union1d(nodes, nodes[within, None] + parts * np.diff(nodes)[within, None])
     free = problem.free_rolling(nodes)
     # the size of the terms of the balance of the axis, of which its rounding is a fraction
     speeds = [np.ones_like(free.V), free.V, free.V + problem.slip(free)]
@@ -304,23 +291,22 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     return found, problem.slip(problem.free_rolling(found))
 
 
-def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
+def _scan_slip(problem: _ScanProblem) -> Floats:
     """Find the states of a load by a scan over the slip, where the sum of the equations gives V
     alone.
 
     Used where the gains on omega of force and torque have the sum 0, but are not 0.
     problem : :class:`_ScanProblem`, the load and the table of its material.
-    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where
-    V > 0, unsorted; empty arrays if there is no state.  States of partial slip are zeros over the
-    slip, those of full slip follow from Q = mu or -mu.
+    Returns the rows x = log2(kappa V) and slip = omega - V, (2, states), dimensionless, in the
+    frame where V > 0, unsorted, without columns if there is no state.  States of partial slip are
+    zeros over the slip, those of full slip follow from Q = mu or -mu.
     Raises ParameterError for a gain on V out of range.
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     law, kappa, mu = problem.contacts
     # crossings of both directions are found; those of V > 0 belong to this frame
     _, sign, u = find_crossings(law, of_V, np.array([kappa * at_rest]))
-    positions = [np.empty(0)]
-    slips = [np.empty(0)]
+    found = [np.empty((2, 0))]
     for x in np.log2(u[sign > 0.0]):
         free = problem.free_rolling(np.array([x]))
         limit = free.slips[2, 0]
@@ -328,15 +314,15 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
 
         # defaults keep x and limit of this turn
         def residual(part: Floats, x: float = x, limit: float = limit) -> Floats:
-            return problem.residual(np.full(part.size, x), limit * part)
+            return problem.residual(np.full_like(part, x), limit * part)
 
         sides = np.array([1.0, -1.0])
         # the slip at which Q = +-mu balances the axis; it is full slip if beyond the limit
         full = (rest - sides * mu) / problem.load_rows[0, 2]
         partial_slip = limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
-        slips += [partial_slip, full[sides * full > limit]]
-        positions += [np.full(each.size, x) for each in slips[-2:]]
-    return np.concatenate(positions), np.concatenate(slips)
+        slip = np.concatenate([partial_slip, full[sides * full > limit]])
+        found.append(np.array([np.full_like(slip, x), slip]))
+    return np.hstack(found)
 
 
 def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
@@ -363,7 +349,7 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     # M_half_space and M_cylinder
     by_loads = np.array([-of_force - of_torque, of_force])
     by_contact = np.array([[0.0, 1.0, 1.0], [1.0, -1.0, 0.0]])
-    for _ in range(_NEWTON_STEPS if V.size else 0):
+    for _ in range(_NEWTON_STEPS):
         over_V, over_omega = slopes_at_fixed_omega(rows)
         # with omega = V + slip a slope over the slip is that over omega, one over V at fixed slip
         # is the sum
@@ -383,19 +369,12 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
         state = np.where(better, new, state)
         rows = np.where(better, new_rows, rows)
         residuals = np.where(better, new_residuals, residuals)
-    V = rows[Field.V]
-    delta = rows[Field.DELTA]
     size = problem.contacts.mu + np.abs(rows[Field.M_HALF_SPACE]) + np.abs(rows[Field.M_CYLINDER])
-    left = np.abs(residuals).max(axis=0) <= _RESIDUAL * size
-    order = np.flatnonzero(left)
-    order = order[np.lexsort((delta[order], V[order]))]
-    V = V[order]
-    delta = delta[order]
-    new = (np.abs(np.diff(V)) > _SAME_STATE * V[1:]) | (
-        np.abs(np.diff(delta)) > _SAME_STATE * np.abs(delta[1:])
-    )
-    # the first state is new; without states there is none to mark
-    return rows[:, order[np.concatenate([[True], new]).astype(bool)[: order.size]]]
+    rows = rows[:, np.abs(residuals).max(axis=0) <= _RESIDUAL * size]
+    rows = rows[:, np.lexsort(rows[[Field.DELTA, Field.V]])]
+    place = rows[[Field.V, Field.DELTA]]
+    same = np.abs(np.diff(place)) <= _SAME_STATE * np.abs(place[:, 1:])
+    return np.delete(rows, 1 + np.flatnonzero(same.all(axis=0)), axis=1)
 
 
 # --- Steady rolling under force, torque or slope ---
@@ -482,65 +461,42 @@ def steady(
     extremum of M nearby; that of fields which follow from Q is this bound divided by ``grip``
     (``tests/test_steady.py``).
     """
-    units = scale_of(roller)
-    plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
-    slope = plain["slope"]
-    level = roller
-    roller, scene, scale = resolve_model(roller, "steady", slope=slope)
-    if type(scene.alpha) is not float:  # a float, the common case, is no array
-        refuse_arrays(level, scene, ("alpha",), slope=slope)
-    force = make_dimensionless("force", plain["force"], scale)
-    torque = make_dimensionless("torque", plain["torque"], scale)
-    V = make_dimensionless("V", plain["V"], scale)
-    loads = loads_of(scene, force, torque=torque, slope=slope, V=V)
+    given, labels = strip_labels(
+        {"force": force, "torque": torque, "slope": slope, "V": V}, scale_of(roller)
+    )
+    slope = given.pop("slope")
+    on_slope, scene, scale = resolve_model(roller, "steady", slope=slope)
+    refuse_arrays(roller, scene, ("alpha",), slope=slope)
+    given = {name: make_dimensionless(name, value, scale) for name, value in given.items()}
+    loads = loads_of(scene, slope=slope, **given)
     law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
-    gained_by_omega = loads.gains.omega
-    gained = bool(loads.gains.V or gained_by_omega)
+    gained = loads.gains.V or loads.gains.omega
+    # without a load every speed of elastic bodies is steady
+    neutral = law.elastic and loads.V is None and not gained
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
         refuse_beyond(law, loads.kappa * np.abs(loads.V))
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
-        rolling = states_at(law, loads, load=moving, sign=np.sign(speed), V=np.abs(speed))
-    elif gained_by_omega:
-        rolling = scan_states(law, loads)
+        rolling = states_at(law, loads, moving, sign=np.sign(speed), V=np.abs(speed))
+        rests = loads.V == 0.0
     else:
-        rolling = _states_under_load(law, loads)
-    neutral = law.elastic and loads.given is None and not gained
-    resting = _loads_at_rest(law, loads, neutral)
+        rolling = scan_states(law, loads) if loads.gains.omega else _states_under_load(law, loads)
+        rests = is_balanced_at_rest(law, loads)
+        if neutral:  # only where the friction does not suffice, which the result has to say
+            rests &= np.abs(loads.torque) > loads.mu
+    resting = np.flatnonzero(rests)
     if resting.size:
         rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
     count = np.bincount(existing.load, minlength=loads.mu.size)
     maximum = (
-        (math.nan, math.nan)
-        if gained or law.elastic or law.coupled is not None
-        else branches(law, 0.0).maximum
+        None if gained or law.elastic or law.coupled is not None else branches(law, 0.0).maximum
     )
-    states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
-    reasons = Diagnosis(loads=loads, states=states, number=count, maximum=maximum, elastic=neutral)
-    found = Steady(loads, existing, reasons=reasons, scale=scale, labels=labels)
-    warn_of_contact(roller, found.V if labels is None else np.asarray(found.V))
+    reasons = Diagnosis(loads, scale, rolling, number=count, maximum=maximum, elastic=neutral)
+    found = Steady(existing, reasons, labels)
+    warn_of_contact(on_slope, np.asarray(found.V))
     return found
-
-
-def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
-    """Return the indices of the loads under which the cylinder is examined at rest, V = omega = 0,
-    (m,).
-
-    law : table of the material.
-    loads : the loads, dimensionless.  Chosen are those with V = 0 where V was given, else those
-        in equilibrium at rest (:func:`is_balanced_at_rest`): of half-spaces force + torque = 0, of
-        a cover the balance with its traction.  Whether friction suffices is considered only on a
-        table of the coupled solution.
-    neutral : whether every speed is steady without a load, as for elastic bodies; without a given V
-        rest is then chosen only where |torque| exceeds mu, so that the friction does not suffice,
-        which the result has to say.
-    """
-    if loads.V is not None:
-        return (loads.V == 0.0).nonzero()[0]
-    rests = is_balanced_at_rest(law, loads)
-    return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
 def _states_under_load(law: LawTable, loads: Loads) -> States:
@@ -554,21 +510,21 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
     or above :data:`MOST_LOAD`, and for a gain out of range.
     """
     with np.errstate(over="ignore"):  # what is infinite is refused
-        gain = loads.gains.V
         total = loads.kappa * (loads.force + loads.torque)
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():
-        allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
         raise ParameterError(
             "(force + torque/R)/load * R/l0",
             f"{total[wrong][0]:g}",
-            f"{allowed} (l0 is the contact length at rest; in a scene R = load = 1, R/l0 = kappa)",
+            f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude (l0 is the contact length at "
+            "rest; in a scene R = load = 1, R/l0 = kappa)",
         )
-    if not gain and law.elastic:
+    if not loads.gains.V and law.elastic:
         return States.none()
-    if not law.moment_of_speed_alone:
+    if law.moment_of_speed_alone:
+        load, sign, u = find_crossings(law, loads.gains.V, total)
+        V = u / loads.kappa[load]
+    else:
         load, sign, V = find_speeds(law, loads)
-        return states_at(law, loads, load=load, sign=sign, V=V)
-    load, sign, u = find_crossings(law, gain, total)
-    return states_at(law, loads, load=load, sign=sign, V=u / loads.kappa[load])
+    return states_at(law, loads, load, sign, V)

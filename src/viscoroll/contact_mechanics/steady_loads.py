@@ -38,7 +38,7 @@ from ..core import (
     described_error,
     slope_tan_cos,
 )
-from ..laws import FIELDS, LawTable
+from ..laws import LawTable
 from .contact_table import Contacts, refuse_overflow
 from .parameters import Parameters
 from .rolling_resistance import find_zeros, speed_nodes
@@ -54,10 +54,10 @@ class Gains(NamedTuple):
     force_omega omega, and torque likewise.
     """
 
-    force_V: float = 0.0
-    force_omega: float = 0.0
-    torque_V: float = 0.0
-    torque_omega: float = 0.0
+    force_V: float
+    force_omega: float
+    torque_V: float
+    torque_omega: float
 
     @property
     def V(self) -> float:
@@ -67,7 +67,7 @@ class Gains(NamedTuple):
     @property
     def omega(self) -> bool:
         """Whether any gain acts on omega."""
-        return self.force_omega != 0.0 or self.torque_omega != 0.0
+        return bool(self.force_omega or self.torque_omega)
 
 
 class Loads(NamedTuple):
@@ -93,6 +93,26 @@ class Loads(NamedTuple):
     mu: Floats
     j: Floats
     V: Floats | None = None
+
+    def contacts(self, law: LawTable, load: Any) -> Contacts:
+        """Return the contacts of a ``law`` at kappa and mu of some loads, ``load``: their index."""
+        return Contacts(law, self.kappa[load], self.mu[load])
+
+    def at_speed(
+        self, load: Any, V: Floats, omega: Any = 0.0, sign: Any = 1.0
+    ) -> tuple[Floats, Floats]:
+        """Return force and torque at given speeds, in the frame of the motion.
+
+        load : index of the load of each speed, a number or (m,).
+        V, omega : speeds, dimensionless, (m,); omega may be left out where it has no gain.
+        sign : -1.0 where a motion towards -x is given as its mirror image, under values at rest of
+            the other sign, else 1.0; a number or (m,).
+        Returns (force, torque), divided by P and P R, (m,) each.
+        """
+        gains = self.gains
+        force = sign * self.force[load] + gains.force_V * V + gains.force_omega * omega
+        torque = sign * self.torque[load] + gains.torque_V * V + gains.torque_omega * omega
+        return force, torque
 
 
 def loads_of(
@@ -122,7 +142,7 @@ def loads_of(
     or a feedback.
     """
     given = None if V is None else _given_load(slope, force=force, torque=torque)
-    tangent = slope_tan_cos(slope)[0]
+
     push, *of_force = _split_feedback("force", force)
     turn, *of_torque = _split_feedback("torque", torque)
     arrays = {
@@ -131,17 +151,17 @@ def loads_of(
         "kappa": scene.kappa,
         "mu": scene.mu,
         "j": scene.j,
-        "slope": tangent,
+        "slope": slope_tan_cos(slope)[0],
     }
     if V is not None:
         arrays["V"] = check_array("V", V)
         refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
     # the rates of disturbances are proportional to gamma
-    shape = broadcast_shape(**arrays, gamma=0.0 if scene.gamma is None else scene.gamma)
+    shape = broadcast_shape(**arrays, gamma=scene.gamma)
     # the rows are in the order of the fields of Loads; slope counts for the shape alone before
     arrays["force"] = push + arrays.pop("slope")
-    rows = broadcast_rows(arrays.values(), shape)
-    return Loads(shape, Gains(*of_force, *of_torque), given, *rows)
+    gains = Gains(*of_force, *of_torque)
+    return Loads(shape, gains, given, *broadcast_rows(arrays.values(), shape))
 
 
 def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
@@ -156,8 +176,11 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     of gains.
     """
     if callable(value) or isinstance(value, Schedule):
-        found = "is a Schedule" if isinstance(value, Schedule) else "is a function"
-        raise described_error(name, found, "a number, an array or a Feedback")
+        raise described_error(
+            name,
+            "is a Schedule" if isinstance(value, Schedule) else "is a function",
+            "a number, an array or a Feedback",
+        )
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):
@@ -197,8 +220,6 @@ def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -
 #: rounding of a balance of force and torque at rest, relative to the sum of both: some units in the
 #: last place
 _BALANCE_ROUNDING = 4e-15
-#: fields of the kernels that :class:`Shear` holds
-_REACTION = "reaction_half_space", "reaction_cylinder", "excess_half_space", "excess_cylinder"
 
 
 class Shear(NamedTuple):
@@ -206,16 +227,16 @@ class Shear(NamedTuple):
 
     factors : a (module) of base and cylinder, (2, n), dimensionless.
     excesses : e (module) of base and cylinder, (2, n), dimensionless.
-    contacts : the law, at a kappa and a mu, numbers or (n,).
+    mu : coefficient of friction, a number or (n,).
     """
 
     factors: Floats
     excesses: Floats
-    contacts: Contacts
+    mu: Any
 
     def moments(self, Q: Floats) -> Floats:
         """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
-        return -Q * (self.factors + self.excesses * (np.abs(Q) / self.contacts.mu))
+        return -Q * (self.factors + self.excesses * (np.abs(Q) / self.mu))
 
     def traction(self, rest: Floats, of_axis: float = 0.0, of_spin: float = 0.0) -> Floats:
         """Return the Q of equilibrium, (n,), from a sum of the balances (module).
@@ -236,7 +257,7 @@ class Shear(NamedTuple):
             raise _cancelling_error(of_spin, of_axis)
         # the root of Q (factor + excess |Q|/mu) = rest that is continuous with excess = 0, in a
         # form without cancellation
-        steep = 4.0 * excess * np.sign(factor) / self.contacts.mu * np.abs(rest)
+        steep = 4.0 * excess * np.sign(factor) / self.mu * np.abs(rest)
         root = np.sqrt(np.maximum(factor * factor + steep, 0.0))
         return 2.0 * rest / (factor + np.copysign(root, factor))
 
@@ -251,8 +272,9 @@ def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
     """
     if contacts.law.cover is None:
         return creep
-    names = "delta_minus", "delta_plus", "delta_star", "delta_0"
-    low, high, star, free = contacts.fields(V, 0.0, *names)
+    low, high, star, free = contacts.fields(
+        V, 0.0, "delta_minus", "delta_plus", "delta_star", "delta_0"
+    )
     # d = 1 and -1 at the onsets: their mean is delta_0 + c delta_star
     return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
@@ -265,8 +287,15 @@ def shear_at(contacts: Contacts, V: Floats) -> Shear:
     """
     fields = np.zeros((4, V.size))
     if contacts.law.cover is not None:
-        fields = contacts.fields(V, 0.0, *_REACTION)
-    return Shear(fields[:2], fields[2:], contacts)
+        fields = contacts.fields(
+            V,
+            0.0,
+            "reaction_half_space",
+            "reaction_cylinder",
+            "excess_half_space",
+            "excess_cylinder",
+        )
+    return Shear(fields[:2], fields[2:], contacts.mu)
 
 
 def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
@@ -286,11 +315,10 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     rounding = _rounding(law, loads)
     parts = []
     for n, kappa in enumerate(loads.kappa):
-        contacts = Contacts(law, kappa, loads.mu[n])
+        contacts = loads.contacts(law, n)
         for sign in (1.0, -1.0):
-            # a motion towards -x is the mirror image, under loads of the other sign
-            one = loads._replace(force=sign * loads.force[n], torque=sign * loads.torque[n])
-            zeros = find_zeros(partial(_torque_left_by_speed, contacts, one), nodes, rounding[n])
+            left = partial(_torque_left_by_speed, contacts, loads, n, sign)
+            zeros = find_zeros(left, nodes, rounding[n])
             # zeros are log2(kappa V)
             parts.append(
                 (np.full(zeros.size, n), np.full(zeros.size, sign), np.exp2(zeros) / kappa)
@@ -327,19 +355,21 @@ def search_nodes(law: LawTable) -> Floats:
     return np.linspace(low, high, int(_DENSITY * (high - low)))
 
 
-def _torque_left_by_speed(contacts: Contacts, load: Loads, x: Floats) -> Floats:
+def _torque_left_by_speed(
+    contacts: Contacts, loads: Loads, load: int, sign: float, x: Floats
+) -> Floats:
     """Return torque - M_cylinder - Q, with the Q that balances the force on the axis.
 
     contacts : the law of a cover, or a table, at one kappa and one mu.
-    load : one load in the frame where V > 0, whose force and torque are numbers.
+    loads : the loads, dimensionless.
+    load : index of the load, to which kappa and mu belong.
+    sign : sign of the motion, in whose frame V > 0.
     x : log2(kappa V) of each speed, (n,).
     Returns the torque that is not balanced, divided by P R, (n,), as :func:`torque_left`; 0 where
     the cylinder rolls steadily.
     """
     V = np.exp2(x) / contacts.kappa
-    force = load.force + load.gains.force_V * V
-    torque = load.torque + load.gains.torque_V * V
-    return torque_left(contacts, V, force, torque)
+    return torque_left(contacts, V, *loads.at_speed(load, V, sign=sign))
 
 
 def torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Floats:
@@ -377,7 +407,7 @@ def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     """
     if law.moment_of_speed_alone:
         return loads.force + loads.torque == 0.0
-    contacts = Contacts(law, loads.kappa, loads.mu)
+    contacts = loads.contacts(law, slice(None))
     still = np.zeros(loads.mu.size)
     left = [
         torque_left(contacts, still, sign * loads.force, sign * loads.torque)
@@ -416,13 +446,10 @@ def balance(
     """
     from ..kernels.law.coupled_splines import balance_loop
 
-    kappa, mu = (
-        np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=float) for each in contacts[1:]
-    )
-    table = contacts.law.record.table
+    kappa, mu = broadcast_rows(contacts[1:], V.shape)
     out = np.empty((V.size, 2))
-    balance_loop(table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
-    return out[:, 0] / (2.0 * kappa), out[:, 1].copy()
+    balance_loop(contacts.law.record.table, kappa, mu, kappa * V, load, spin, out)
+    return out[:, 0] / (2.0 * kappa), out[:, 1]
 
 
 def loads_without_omega(
@@ -480,15 +507,15 @@ def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     from ..kernels.law.spline_law import look_up
 
     law, kappa, mu = contacts
-    # moments are times kappa
-    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
-    fields = dict(zip(FIELDS, found.T, strict=True))
+    # columns in the order of law_rows.FIELDS; moments are times kappa
+    columns = look_up(law.record.table, kappa * V, 2.0 * kappa * delta).T
+    Q_over_mu, M_half_space, M_cylinder, *_, work_half_space, work_cylinder = columns
     omega_over_V = 1.0 + delta
-    half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
-    cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V
+    half_space = M_half_space + 0.5 * work_half_space
+    cylinder = M_cylinder + 0.5 * work_cylinder / omega_over_V
     # powers divided by V, times kappa
     lost = half_space + omega_over_V * cylinder
-    supplied = fields["M_half_space"] + omega_over_V * fields["M_cylinder"]
-    supplied += kappa * mu * delta * fields["Q_over_mu"]
+    supplied = M_half_space + omega_over_V * M_cylinder
+    supplied += kappa * mu * delta * Q_over_mu
     reduction = np.divide(supplied, lost, out=np.ones_like(lost), where=lost > 0.0)
     return np.clip(reduction, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa

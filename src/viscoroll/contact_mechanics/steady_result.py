@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import (
-    DIMENSIONS,
     Dataset,
     Floats,
     Integers,
@@ -78,34 +77,32 @@ class Diagnosis(NamedTuple):
     """Data for the explanation why a load has no equilibrium.
 
     loads : the loads, n of them, dimensionless.
-    states : (index of the load, V, Q) of all states, whether or not the friction suffices,
-        (states,) each, dimensionless.
+    scale : units of the roller, in which the sentences state their numbers.
+    states : all states, whether or not the friction suffices.
     number : equilibria of each load, (n,).
-    maximum : (largest kappa M, kappa V there), dimensionless; (NaN, NaN) with feedback, and for
-        elastic bodies.
+    maximum : (largest kappa M, kappa V there), dimensionless; None with feedback, for elastic
+        bodies, and on a table of the coupled solution.
     elastic : whether the bodies are elastic and no gain and no given V determines the speed, so
         that M = 0 at every speed.
     """
 
     loads: Loads
-    states: tuple[Integers, Floats, Floats]
+    scale: Scale
+    states: States
     number: Integers
-    maximum: tuple[float, float]
+    maximum: tuple[float, float] | None
     elastic: bool
 
-    def text(self, scale: Scale) -> Any:
+    def text(self) -> Any:
         """Return for each load the reason why it has no equilibrium, "" where it has one.
 
-        scale: units of the roller, in which the sentences state their numbers.
         Returns a str for one load, else an array of str (dtype object) in the shape of the loads.
         """
         shape = self.loads.shape
-        found = [
-            self._reason(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)
-        ]
+        found = ["" if number else self._reason(n) for n, number in enumerate(self.number)]
         return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
-    def _reason(self, n: int, scale: Scale) -> str:
+    def _reason(self, n: int) -> str:
         """Return why a load has no equilibrium, as a sentence without a full stop.
 
         It is the first of these that applies: friction (the balance needs more than mu, or mu
@@ -113,33 +110,35 @@ class Diagnosis(NamedTuple):
         without resistance; a feedback that balances the moment at no speed; a load above the
         largest moment.
         n : index of a load without equilibrium in the flattened loads.
-        scale : units of the roller, in which the sentence states its numbers but Q and mu, which
-            are dimensionless; of a scene all are.
+        The numbers are in the units of the roller but Q and mu, which are dimensionless; of a scene
+        all are.
         """
         name, moment, of_load, of_speed = (
             ("force + torque/R", "rolling moment divided by R", " N/m", " m/s")
-            if scale.si
+            if self.scale.si
             else ("force + torque", "rolling moment", "", "")
         )
         loads = self.loads
-        load, speed = (np.broadcast_to(scale[of], loads.shape).ravel()[n] for of in ("force", "V"))
-        at_rest = loads.force[n] + loads.torque[n]
+        load, speed = (
+            np.broadcast_to(self.scale[of], loads.shape).ravel()[n] for of in ("force", "V")
+        )
         mu = loads.mu[n]
-        kappa = loads.kappa[n]
-        total = at_rest * load
-        own, V, Q = self.states
-        if (own == n).any():  # the state that asks for the least friction
-            V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
+        total = (loads.force[n] + loads.torque[n]) * load
+        states = self.states.rows[:, self.states.load == n]
+        if states.size:  # the state that asks for the least friction
+            V, Q = states[[Field.V, Field.Q], np.abs(states[Field.Q]).argmin()]
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 return (
                     f"no single steady state: |Q|/load = {mu:.6g} equals mu, and {at} the cylinder "
                     "slips steadily at any omega beyond a limit; lower the loads or raise mu"
                 )
-            needed = f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}"
-            return f"{needed}, above the friction mu = {mu:.6g}: lower the loads"
+            return (
+                f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}, above the friction mu = "
+                f"{mu:.6g}: lower the loads"
+            )
         if self.elastic:
-            if at_rest == 0.0:
+            if total == 0.0:
                 return (
                     "no isolated steady speed: elastic bodies roll without resistance, so "
                     "every V is steady"
@@ -148,16 +147,15 @@ class Diagnosis(NamedTuple):
                 f"{name} = {total:.6g}{of_load} is not 0, but elastic bodies roll without "
                 "resistance: no speed is steady"
             )
-        M, V = (value / kappa for value in self.maximum)
-        if np.isnan(M):
+        if self.maximum is None:
             return (
                 f"at no speed that was searched the {moment} equals {name} ({total:.6g}{of_load} "
                 "at rest)"
             )
+        M, V = np.divide(self.maximum, loads.kappa[n])
         return (
             f"|{name}| = {abs(total):.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest "
-            f"{moment}"
-            f" (at V = {V * speed:.6g}{of_speed})"
+            f"{moment} (at V = {V * speed:.6g}{of_speed})"
         )
 
 
@@ -200,24 +198,28 @@ class Equilibria(Values):
         why there is none; of several states the number of all equilibria and of the stable ones,
         and the ranges of fields.
         """
-        units = {name: unit_of(self._attributes(name)) for name in self._rows}
         if np.ndim(self.count):
-            found = (
-                f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
-            )
             ranges = [
-                SummaryRow(name, format_value(np.asarray(self[name])), units[name])
+                SummaryRow(
+                    name, format_value(np.asarray(self[name])), unit_of(self._attributes(name))
+                )
                 for name in self._ranges
             ]
             return f"{self._heading}, {np.size(self.count)} states", [
-                SummaryRow("equilibria", found),
+                SummaryRow(
+                    "equilibria",
+                    f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them "
+                    "stable",
+                ),
                 *ranges,
             ]
         rows = [SummaryRow("reason", str(self.reason))] if self.reason else []
         for n in range(int(self.count)):
             rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else self._unstable))
             rows += [
-                SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", units[name])
+                SummaryRow(
+                    f"  {name}", f"{float(self[name][n]):.6g}", unit_of(self._attributes(name))
+                )
                 for name in self._rows
             ]
         return self._heading + ("" if self.count else ": no equilibrium"), rows
@@ -291,9 +293,7 @@ class Steady(Equilibria):
     _rows = "V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"
     _ranges = ("V",)
 
-    def __init__(
-        self, loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None
-    ) -> None:
+    def __init__(self, states: States, reasons: Diagnosis, labels: Labels | None) -> None:
         """Pack steady states, one after another, into arrays over loads and equilibria, in the
         units of the roller.
 
@@ -303,50 +303,38 @@ class Steady(Equilibria):
         further axis of two, ``count`` has the axes of the loads alone, an int for one load.  With V
         given, force or torque is what the balance needs.
 
-        loads : the loads, n of them, dimensionless.
         states : :class:`.steady_states.States` that exist, sorted by load and |V|, dimensionless.
         reasons : :class:`Diagnosis`, data of the loads without equilibrium; its ``number`` is the
-            number of states of each load.
-        scale : units of the roller, which the result has.
+            number of states of each load, its ``loads`` are the loads, dimensionless, and its
+            ``scale`` the units of the roller, which the result has.
         labels : labels of the arguments of the call, or None; arrays of the scene may add axes in
             front of them.
         """
-        number = states.load
-        count = reasons.number
-        gains = loads.gains
-        V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
-        force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
-        torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
+        loads, scale, _, count, *_ = reasons
+        fields = states.rows[: Field.FAST]
+        V, _, Q, M_half_space, M_cylinder, _, omega = fields
+        force, torque = loads.at_speed(states.load, V, omega)
         # with V given: the balance of the axis, and that of the cylinder
         if loads.given == "torque":
             force = M_half_space - Q
         elif loads.given == "force":
             torque = M_cylinder + Q
-        grip = 1.0 - np.abs(Q) / loads.mu[number]
-        # rows: those of _FIELDS, V to omega from the states; then the moments without traction and
-        # the three of the eigenvalues, which are read below
-        more = np.array(
-            [M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary]
-        )
-        rows = np.concatenate([states.rows[: Field.FAST], more])
-        rows = pad(rows, number, count, loads.shape)
-        found = dict(zip(_FIELDS, rows, strict=False))
-        for name in (found.keys() & DIMENSIONS.keys()) if scale.si else ():
-            unit = scale[name]
-            # in place of append_axis, whose calls take longer here than the rest
-            found[name] = found[name] * (unit[..., None] if isinstance(unit, np.ndarray) else unit)
+        grip = 1.0 - np.abs(Q) / loads.mu[states.load]
+        # those of _FIELDS, V to omega from the states, then those of the states from FAST on
+        rows = [*fields, M_half_space + M_cylinder, grip, force, torque, *states.rows[Field.FAST :]]
+        padded = pad(rows, count, loads.shape)
+        found = {name: each * append_axis(scale[name]) for name, each in zip(_FIELDS, padded)}
         # the unit of all three, 1/s of a cylinder
-        fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
-        eigenvalues = np.empty((*fast.shape, 2), np.complex128)
-        eigenvalues[..., 0] = fast - 1j * imaginary
-        eigenvalues[..., 1] = slow + 1j * imaginary
-        found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
-        found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
+        fast, slow, imaginary = padded[-5:-2] * append_axis(scale["rate_fast"])
+        found |= {
+            "stable": (fast < 0.0) & (slow < 0.0),
+            "eigenvalues": np.stack([fast - 1j * imaginary, slow + 1j * imaginary], axis=-1),
+            "count": count.reshape(loads.shape) if loads.shape else int(count[0]),
+        }
         super().__init__(found, labels, si=scale.si)
         # without traction, divided by P R
-        self._free = rows[len(_FIELDS) : len(_FIELDS) + 2]
+        self._free = padded[-2:]
         self.reasons = reasons
-        self.scale = scale
 
     def keys(self) -> Iterable[str]:
         """Return the names of the fields, which are attributes and are read by ``result[name]``
@@ -366,6 +354,7 @@ class Steady(Equilibria):
         return [*self._values, "loss", "reason"]
 
     @cached_property
+    @np.errstate(invalid="ignore", divide="ignore")  # where V or the input is 0
     def loss(self) -> Loss:
         """Return the powers of each equilibrium, its coefficient of rolling resistance and its
         efficiency.
@@ -379,24 +368,20 @@ class Steady(Equilibria):
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
         )
-        R, P = (append_axis(self.scale[name]) for name in ("R", "P"))
+        R, P, P_R = (append_axis(self.reasons.scale[name]) for name in ("R", "P", "M"))
         moving = V != 0.0
         # (omega R - V) Q = V delta Q; at V = 0, where delta is infinite or a limit, omega R Q
-        slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
-        free_half_space, free_cylinder = self._free * append_axis(self.scale["M"])
+        slip = np.where(moving, V * delta, R * omega) * Q
+        free_half_space, free_cylinder = self._free * P_R
         half_space = V * free_half_space / R
         cylinder = omega * free_cylinder
         # what shear changes in the moments is taken from friction
-        slip = slip + (
-            V * (M_half_space - free_half_space) / R + omega * (M_cylinder - free_cylinder)
-        )
-        whole = slip + half_space + cylinder
-        speed = np.where(moving, np.abs(V), 1.0)
-        with np.errstate(invalid="ignore"):
-            coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
+        slip += V * (M_half_space - free_half_space) / R + omega * (M_cylinder - free_cylinder)
         powers = np.stack([force * V, torque * omega])
         output, input_ = (np.maximum(signed, 0.0).sum(axis=0) for signed in (-powers, powers))
-        efficiency = np.divide(output, input_, out=np.full(V.shape, np.nan), where=input_ > 0.0)
+        lost = slip + half_space + cylinder
+        coefficient = np.where(moving, lost / np.abs(V), np.abs(Q * delta)) / P
+        efficiency = np.where(input_ > 0.0, output / input_, np.nan)
         found: Any = slip, half_space, cylinder, coefficient, efficiency
         if self._labels is not None:
             found = map(self._labels.apply, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
@@ -412,14 +397,14 @@ class Steady(Equilibria):
         """0 where there is an equilibrium, else 1; an int, or an array in the shape of the
         loads.
         """
-        return np.where(self.success, 0, 1)[()]
+        return 1 - self.success
 
     @property
     def reason(self) -> Any:
         """Why there is no equilibrium; "" where there is one.  Of arrays of loads an array of
         strings.
         """
-        return self.reasons.text(self.scale)
+        return self.reasons.text()
 
     #: as :attr:`reason`
     message = reason
@@ -447,11 +432,9 @@ class Steady(Equilibria):
         >>> vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).to_xarray()["V"].attrs["units"]
         'm s-1'
         """
-        rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
-        found = {name: self[name] for name in (*_FIELDS, "stable")} | {
-            "rate_fast": rates[0],
-            "rate_slow": rates[1],
-        }
+        rates = np.asarray(self.eigenvalues).real
+        found = {name: self[name] for name in (*_FIELDS, "stable")}
+        found |= {"rate_fast": rates[..., 0], "rate_slow": rates[..., 1]}
         return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
 
 
@@ -462,20 +445,15 @@ def append_axis(unit: Any) -> Any:
     return unit[..., None] if isinstance(unit, np.ndarray) else unit
 
 
-def pad(rows: Floats, number: Integers, count: Integers, shape: tuple[int, ...]) -> Floats:
+def pad(rows: Any, count: Integers, shape: tuple[int, ...]) -> Floats:
     """Arrange equilibria, one after another, as arrays over states and equilibria, padded with NaN.
 
-    rows: fields of the equilibria, sorted by state, (fields, m).
-    number: index of the state of each, (m,).
+    rows: fields of the equilibria, sorted by state, (m,) each.
     count: number of equilibria of each state, (n,).
     shape: shape of the n states.
     Returns the fields, (fields, states..., equilibria).
     """
     most = int(count.max(initial=0))
-    if most * count.size > number.size:  # some have fewer
-        # place of each among those of its state
-        place = np.arange(number.size) - (np.cumsum(count) - count)[number]
-        padded = np.full((len(rows), count.size * most), np.nan)
-        padded[:, number * most + place] = rows
-        rows = padded
-    return rows.reshape(len(rows), *shape, most)
+    padded = np.full((len(rows), count.size, most), np.nan)
+    padded[:, np.arange(most) < count[:, None]] = rows
+    return padded.reshape(len(rows), *shape, most)

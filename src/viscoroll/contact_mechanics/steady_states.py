@@ -19,6 +19,7 @@ omega, or omega, the eigenvalues and the moments without traction.
 from __future__ import annotations
 
 from enum import IntEnum
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -81,12 +82,10 @@ class Field(IntEnum):
     FREE_CYLINDER = 11
 
 
-#: number of rows
-_COUNT = len(Field)
 #: slopes over V at fixed creepage
-_OVER_V = (Field.DQ_DV, Field.DM_HALF_SPACE, Field.DM_CYLINDER)
+_OVER_V = [Field.DQ_DV, Field.DM_HALF_SPACE, Field.DM_CYLINDER]
 #: slopes over the creepage, in the same order
-_OVER_CREEP = (Field.DQ_DDELTA, Field.DM_HALF_SPACE_DDELTA, Field.DM_CYLINDER_DDELTA)
+_OVER_CREEP = [Field.DQ_DDELTA, Field.DM_HALF_SPACE_DDELTA, Field.DM_CYLINDER_DDELTA]
 #: speed below which slopes are those at it: slopes over omega, which the kernels give, overflow at
 #: 1e-306, and M/V and Q are those of V = 0 to rounding
 _LEAST_SPEED = 1e-290
@@ -108,14 +107,14 @@ class States(NamedTuple):
 
     @classmethod
     def of(
-        cls, loads: Loads, load: Integers, sign: Floats, answers: Floats, free: Floats | None = None
+        cls, loads: Loads, load: Integers, sign: Any, answers: Floats, free: Any = None
     ) -> States:
         """Make the states from values of the law in a frame where V > 0: give V, Q and the moments
         the signs of the motion, and add omega and the eigenvalues.
 
         loads : :class:`Loads`, the loads, of which the gains and j are used.
         load : index of the load of each state, (n,).
-        sign : sign of V, 1.0 or -1.0, (n,).
+        sign : sign of V, 1.0 or -1.0, a number or (n,).
         answers : rows of :class:`Field` with the slopes of the law from row 6 on, (12, n), in a
             frame where V > 0; not changed.
         free : M_half_space and M_cylinder without traction, (2, n), in that frame; None: those of
@@ -126,8 +125,9 @@ class States(NamedTuple):
         rows[Field.FREE_HALF_SPACE :] = (
             answers[[Field.M_HALF_SPACE, Field.M_CYLINDER]] if free is None else free
         )
-        moments = [Field.M_HALF_SPACE, Field.M_CYLINDER, Field.FREE_HALF_SPACE, Field.FREE_CYLINDER]
-        rows[[Field.V, Field.Q, *moments]] *= sign
+        rows[Field.V] *= sign
+        rows[Field.Q : Field.BETA] *= sign  # and both moments
+        rows[Field.FREE_HALF_SPACE :] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
         # of the frame where V > 0: a mirror image has the same eigenvalues
         rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers, loads.gains, loads.j[load])
@@ -150,9 +150,8 @@ class States(NamedTuple):
         with V > 0), 0 for elastic bodies without gains; delta and omega are NaN where the friction
         does not suffice, |Q| >= mu.
         """
-        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
         still = np.zeros(load.size)
-        contacts = Contacts(law, kappa, mu)
+        contacts = loads.contacts(law, load)
         on_spin = loads.given != "force"
         required = loads.torque[load] if on_spin else -loads.force[load]
         if law.coupled is not None:
@@ -163,32 +162,31 @@ class States(NamedTuple):
         else:
             star, free = contacts.fields(still, 0.0, "delta_star", "delta_0")
             shear = shear_at(contacts, still)
-            Q = shear.traction(required, of_axis=1.0 - on_spin, of_spin=float(on_spin))
-            part = np.minimum(np.abs(Q) / mu, 1.0)
+            Q = shear.traction(required, of_axis=1.0 - on_spin, of_spin=on_spin)
+            part = np.minimum(np.abs(Q) / contacts.mu, 1.0)
             # delta_star (1 - sqrt(1 - |Q|/mu)) without cancellation, the creepage of Carter's
             # contact, of motion to either side
-            star = star * part / (1.0 + np.sqrt(1.0 - part))
-            creeps = [
-                free + creep_beyond_free(contacts, still, sign * star)
-                for sign in (np.sign(Q), -np.sign(Q))
-            ]
+            creep = np.sign(Q) * star * part / (1.0 + np.sqrt(1.0 - part))
+            creeps = [free + creep_beyond_free(contacts, still, side) for side in (creep, -creep)]
             rows = state_rows(contacts, still, creeps[0])
             rows[Field.Q] = Q
             exists = part < 1.0
         slow = np.full(load.size, -np.inf)
         with np.errstate(divide="ignore", invalid="ignore"):  # in full slip
             # slopes of the balances over Q, then of the moments over V at fixed Q
-            slopes = rows[list(_OVER_CREEP)] / rows[Field.DQ_DDELTA]
+            slopes = rows[_OVER_CREEP] / rows[Field.DQ_DDELTA]
             of_axis = 1.0 - slopes[1]
             of_spin = 1.0 + slopes[2]
-            over_V = rows[list(_OVER_V)]
+            over_V = rows[_OVER_V]
             half_space, cylinder = over_V[1:] - slopes[1:] * over_V[0]
             gains = loads.gains
             for creep in creeps:
-                push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
-                turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
+                omega_over_V = 1.0 + creep
+                push = half_space - gains.force_V - gains.force_omega * omega_over_V
+                turn = cylinder - gains.torque_V - gains.torque_omega * omega_over_V
                 rate = of_spin * push + of_axis * turn
-                slow = np.maximum(slow, -rate / (of_spin + j * of_axis * (1.0 + creep)))
+                inertia = of_spin + loads.j[load] * of_axis * omega_over_V
+                slow = np.maximum(slow, -rate / inertia)
         rows[Field.OMEGA :] = 0.0
         rows[Field.FAST] = -np.inf
         rows[Field.SLOW] = slow
@@ -198,23 +196,20 @@ class States(NamedTuple):
     @classmethod
     def none(cls) -> States:
         """No state."""
-        return cls(np.empty(0, np.int64), np.empty((_COUNT, 0)))
+        return cls(np.empty(0, np.int64), np.empty((len(Field), 0)))
 
     @classmethod
     def joined(cls, *parts: States) -> States:
         """States of all parts, one after another."""
-        return cls(
-            np.concatenate([each.load for each in parts]),
-            np.concatenate([each.rows for each in parts], axis=1),
-        )
+        return cls(*map(np.hstack, zip(*parts, strict=True)))
 
     def existing(self) -> States:
         """Return the states for which the friction suffices (omega is finite) as new
         :class:`States`, maybe none, sorted by load, then by rising |V|; of equal |V| in their
         order.
         """
-        chosen = np.isfinite(self.rows[Field.OMEGA]).nonzero()[0]
-        chosen = chosen[np.lexsort((np.abs(self.rows[Field.V, chosen]), self.load[chosen]))]
+        order = np.lexsort((np.abs(self.rows[Field.V]), self.load))
+        chosen = order[np.isfinite(self.rows[Field.OMEGA, order])]
         return States(self.load[chosen], self.rows[:, chosen])
 
 
@@ -234,10 +229,9 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
     and ``on_spin``.  The equation is that of min(j, 1) min(V, 1) times an eigenvalue, in units of a
     power of 2, so that no square overflows; an eigenvalue beyond the doubles is infinite.
     """
-    V, delta = answers[[Field.V, Field.DELTA]]
-    dQ_dV, dQ_ddelta, d_half_space, d_cylinder, half_space_ddelta, cylinder_ddelta = answers[
-        Field.DQ_DV :
-    ]
+    V, delta, *_, dQ_dV, dQ_ddelta, d_half_space, d_cylinder, half_space_ddelta, cylinder_ddelta = (
+        answers
+    )
     unit = np.minimum(j, 1.0)
     slow = np.minimum(V, 1.0)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
@@ -249,14 +243,15 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         d_cylinder = d_cylinder - (on_spin - 1.0) * dQ_dV
         # slopes of Q over omega, and over V at fixed omega, times ``slow``
         b = dQ_ddelta / np.maximum(V, 1.0)
-        a = slow * dQ_dV - np.multiply(b, 1.0 + delta, out=0.0 * b, where=b != 0.0)
+        a = slow * dQ_dV - np.where(b != 0.0, b * (1.0 + delta), 0.0 * b)
         axis = on_axis * a + slow * (gains.force_V - d_half_space)
         det = on_spin * d_half_space + on_axis * d_cylinder
         det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
         det += gains.torque_omega * axis
         spin = on_spin * a + slow * (d_cylinder - gains.torque_V)
-        det = (det + gains.force_omega * spin) / (j / unit)
-        half = 0.5 * (unit * axis + (slow * gains.torque_omega - on_spin * b) / (j / unit))
+        inertia = j / unit
+        det = (det + gains.force_omega * spin) / inertia
+        half = 0.5 * (unit * axis + (slow * gains.torque_omega - on_spin * b) / inertia)
         product = np.sqrt(np.abs(det)) * np.sqrt(slow)
         # with y = unit slow times an eigenvalue: y^2 - 2 half y + det unit slow = 0; the larger
         # root has no cancellation, and the other eigenvalue follows from the product of both
@@ -265,15 +260,15 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         spread -= np.ldexp(det * unit, -power) * np.ldexp(slow, -power)
         root = np.ldexp(np.sqrt(np.abs(spread)), power)
         larger = half + np.copysign(root, half)
-        other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
+        other = np.where(larger != 0.0, det / larger, 0.0 * det)
         real = spread >= 0.0
         larger = larger / unit / slow
         half = half / unit / slow
         root = root / unit / slow
         return np.array(
             [
-                np.minimum(larger, other, out=1.0 * half, where=real),
-                np.maximum(larger, other, out=1.0 * half, where=real),
+                np.where(real, np.minimum(larger, other), half),
+                np.where(real, np.maximum(larger, other), half),
                 np.where(real, 0.0, root),
             ]
         )
@@ -288,18 +283,15 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     Returns rows of :class:`Field` with slopes, (12, n).  In full slip Q is mu or -mu, and beta and
     the slopes of Q are 0.  beta is NaN of a grid, which does not contain it.
     """
-    rows = np.empty((_COUNT, V.size))
-    rows[Field.V] = V
-    rows[Field.DELTA] = delta
-    rows[2:] = contacts.fields(V, delta, *_ROWS)
+    rows = np.vstack([V, delta, contacts.fields(V, delta, *_ROWS)])
     if contacts.law.gridded:
         rows[Field.BETA] = np.nan
     speed = V
-    if np.minimum.reduce(V, initial=_LEAST_SPEED) < _LEAST_SPEED:
+    if (V < _LEAST_SPEED).any():
         speed = np.maximum(V, _LEAST_SPEED)
         rows[Field.DQ_DV :] = contacts.fields(speed, delta, *_ROWS[Field.DQ_DV - 2 :])
     # a slope over omega times V is one over the creepage
-    rows[list(_OVER_CREEP)] *= speed
+    rows[_OVER_CREEP] *= speed
     return rows
 
 
@@ -307,8 +299,8 @@ def slopes_at_fixed_omega(rows: Floats) -> tuple[Floats, Floats]:
     """Return the slopes of Q, M_half_space and M_cylinder over V at fixed omega, and those over
     omega, (3, n) each, from rows of :class:`Field` with slopes.
     """
-    over_omega = rows[list(_OVER_CREEP)] / rows[Field.V]
-    return rows[list(_OVER_V)] - over_omega * (1.0 + rows[Field.DELTA]), over_omega
+    over_omega = rows[_OVER_CREEP] / rows[Field.V]
+    return rows[_OVER_V] - over_omega * (1.0 + rows[Field.DELTA]), over_omega
 
 
 def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers, Floats, Floats]:
@@ -324,20 +316,17 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers,
     load has none to many; V = 0 is not among them.
     Raises ParameterError for a gain out of range.
     """
-    from ..kernels.law.law_functions import crossing_loop
+    from ..kernels.law.law_functions import LoadCurve, crossing_loop
 
     found = branches(law, gain)
     # M is odd: motion with V < 0 is that with V > 0 under the opposite load
     signed = np.concatenate([total, -total])
     which, node = found.locate_loads(signed)
-    totals = signed[which]
-    curve = found.curve
+    curve = LoadCurve(found.u, found.resistance, found.extremum, gain)
     u = np.empty(which.size)
-
-    def work(start: int, stop: int) -> None:
-        crossing_loop(law.record, curve, totals, node, u, start, stop)
-
-    run_blocks(work, which.size, _BLOCK)
+    run_blocks(
+        partial(crossing_loop, law.record, curve, signed[which], node, u), which.size, _BLOCK
+    )
     return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 
 
@@ -355,29 +344,25 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     Returns the :class:`States`, (n,), with the signs of the motion; delta and omega are NaN and
     beta is 0 where |Q| >= mu, so that the friction does not suffice.
     """
-    gains = loads.gains
-    kappa = loads.kappa[load]
-    mu = loads.mu[load]
-    force = sign * loads.force[load] + gains.force_V * V
-    torque = sign * loads.torque[load] + gains.torque_V * V
-    contacts = Contacts(law, kappa, mu)
+    contacts = loads.contacts(law, load)
+    force, torque = loads.at_speed(load, V, sign=sign)
+    on_spin = loads.given == "torque"
     if law.coupled is not None:
-        spin = loads.given == "torque"
-        delta, rest = balance(contacts, V, torque if spin else -force, spin)
+        delta, rest = balance(contacts, V, torque if on_spin else -force, on_spin)
         rows = state_rows(contacts, V, delta)
         losses = moments_of_losses(contacts, V, delta)
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
-        return States.of(loads, load, sign=sign, answers=rows, free=losses)
+        return States.of(loads, load, sign, rows, free=losses)
     delta_0 = contacts.free_creep(V)
-    names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
-    free = contacts.fields(V, delta_0, *names)
-    on_spin = loads.given == "torque"
+    *free, star, lam, rise = contacts.fields(
+        V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
+    )
     Q = torque - free[1] if on_spin else free[0] - force
-    moments: Any = free[:2]
+    moments: Any = free
     if law.cover is not None:
         shear = shear_at(contacts, V)
-        Q = shear.traction(Q, of_axis=1.0 - on_spin, of_spin=float(on_spin))
+        Q = shear.traction(Q, of_axis=1.0 - on_spin, of_spin=on_spin)
         moments = moments + shear.moments(Q)
     elif loads.given is None:  # V is such that both loads balance M
         M = free[0] + free[1]
@@ -385,16 +370,14 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
         share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
         Q = share * torque - (1.0 - share) * force
         moments = share * (force + torque), (1.0 - share) * (force + torque)
-    part = np.abs(Q) / mu
+    part = np.abs(Q) / contacts.mu
     exists = part < 1.0
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
-    star, lam, rise = free[2:]
     faster = V / root
-    rolling = contacts.free_creep(faster)
-    less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")
+    less_star, less_lam = contacts.fields(faster, contacts.free_creep(faster), "delta_star", "lam")
     # the formula of the module; for a small Q its difference is rounding, and |Q| over the slope
     # ``rise`` = dQ/ddelta at Q = 0 takes its place
-    size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
+    size = np.where(part > _SMALL_TRACTION, star - root * less_star, contacts.mu * part / rise)
     creep = creep_beyond_free(contacts, V, np.copysign(size, Q))
     rows = state_rows(contacts, V, creep + delta_0)
     # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows
@@ -406,6 +389,4 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
     rows[Field.BETA] = root * less_lam / lam
     rows[Field.DELTA, ~exists] = np.nan
-    return States.of(
-        loads, load, sign=sign, answers=rows, free=None if law.cover is None else free[:2]
-    )
+    return States.of(loads, load, sign, rows, free=None if law.cover is None else free)

@@ -174,15 +174,13 @@ class Steadiness(Assumption):
         """
         sentence = "there is no motion"
         if np.size(value):
-            most = float(np.max(value))
             worst = (
                 free.take(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
             )
-            described = motion_share is not None
             sentence = (
-                _describe_motion(worst, most, float(np.mean(motion_share)))
-                if described
-                else _describe_free(worst)
+                _describe_free(worst)
+                if motion_share is None
+                else _describe_motion(worst, np.max(value), np.mean(motion_share))
             )
         created = cls(value <= STEADY_LIMIT, value, sentence)
         created.free = free
@@ -213,8 +211,7 @@ class Steadiness(Assumption):
         (2,)
         """
         chosen = self._replace(holds=self.holds[last], value=self.value[last])
-        chosen.free = self.free
-        chosen.motion_share = self.motion_share
+        vars(chosen).update(vars(self))
         return chosen
 
     @cached_property
@@ -253,11 +250,9 @@ class Steadiness(Assumption):
         """
         if self.motion_share is not None:
             return self.motion_share
-        left = np.asarray(self.ten_percent.left)
-        whole = np.asarray(self.whole)
-        return np.divide(
-            left, whole, out=np.asarray(self.value > STEADY_LIMIT, float), where=left < whole
-        )[()]
+        left = self.ten_percent.left
+        slow = np.asarray(self.value > STEADY_LIMIT, float)
+        return np.divide(left, self.whole, out=slow, where=left < self.whole)[()]
 
 
 def _describe_free(free: FreeRolling) -> str:
@@ -269,8 +264,8 @@ def _describe_free(free: FreeRolling) -> str:
     Returns a str without a full stop.  Where the unsteadiness is above 0.1 it states alone from
     which speed on it is not; for an elastic cylinder alone that it never stops.
     """
-    speed, time, length = (f" {unit}".rstrip() for unit in free.units)
-    value = float(free.unsteadiness)
+    speed, time, length = free.units
+    value = free.unsteadiness
     most = free.reach(STEADY_LIMIT)
     whole = free.distance()
     text = f"unsteadiness (relative error of V) {value:.2g}, up to {STEADY_LIMIT} is allowed: "
@@ -288,16 +283,17 @@ def _describe_free(free: FreeRolling) -> str:
     if fine.time:  # 0 where the error is above 1 % at the start already
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
     if fine.speed:
-        reached = (
-            f"which is reached after a time of {most.time:.3g}{time}, at a distance of "
-            f"{most.left:.2g}{length} before the end"
+        end = (
+            f"down to {most.speed:.2g}{speed}, which is reached after a time of "
+            f"{most.time:.3g}{time}, at a distance of {most.left:.2g}{length} before the end"
         )
-        end = f"down to {most.speed:.2g}{speed}, {reached}"
         text += f"10 % {end if most.speed else 'to the end'}"
-    if start.speed > LARGEST_LOSS * float(free.u * free.speed):
+    if start.speed > LARGEST_LOSS * (free.u * free.speed):
         return text + "; after a long standstill the cylinder would not leave its indentation"
-    loss = f"{start.speed:.2g}{speed} of speed and {start.distance:.2g}{length} of distance"
-    return f"{text}; a start after a long standstill costs {loss}"
+    return (
+        f"{text}; a start after a long standstill costs {start.speed:.2g}{speed} of speed and "
+        f"{start.distance:.2g}{length} of distance"
+    )
 
 
 def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
@@ -310,11 +306,13 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
         it is not known, which the sentence then leaves out.
     Returns a str without a full stop.
     """
-    text = f"unsteadiness (relative error of V) up to {most:.2g}, {STEADY_LIMIT} is allowed: "
-    text += "the error of V is below 10 % "
+    text = (
+        f"unsteadiness (relative error of V) up to {most:.2g}, {STEADY_LIMIT} is allowed: "
+        "the error of V is below 10 % "
+    )
     if most <= STEADY_LIMIT:
         return text + "throughout"
-    speed = f"{free.reach(STEADY_LIMIT).speed:.2g} {free.units[0]}".rstrip()
+    speed = f"{free.reach(STEADY_LIMIT).speed:.2g}{free.units[0]}"
     below = (
         "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is below that speed"
     )
@@ -350,7 +348,7 @@ def stated_error(thickness: float) -> float:
     Returns the error, dimensionless, interpolated between the thicknesses 0.2 to 5 at which it was
     measured; the value of the nearest end outside of them.
     """
-    return float(np.interp(thickness, _THICKNESS, _ERROR))
+    return np.interp(thickness, _THICKNESS, _ERROR)
 
 
 def assess_cover(scene: Parameters, lam: Any) -> Assumption:
@@ -365,20 +363,20 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     every creepage.  The sentence states the thickness of the thinnest cover, and the limit for the
     cover whose limit is lowest.
     """
-    cover = scene.cover
-    assert cover is not None
+    cover: Any = scene.cover
     half = 0.5 * lam
-    thickness = float(np.min(cover.thinnest))
-    layers = [(nu, h) for _, nu, h in map(cover.body, ("cylinder", "base")) if h is not None]
-    limits = [np.interp(nu, _NU, _MOST_THETA) for nu, _ in layers]
-    holds = np.all(
-        [half / h <= limit for (_, h), limit in zip(layers, limits, strict=True)], axis=0
-    )
+    # (half contact length over thickness that is allowed, thickness) of each layer
+    layers = [
+        (np.interp(nu, _NU, _MOST_THETA), h)
+        for _, nu, h in map(cover.body, ("cylinder", "base"))
+        if h is not None
+    ]
+    holds = np.all([half / h <= limit for limit, h in layers], axis=0)
     theta = half / cover.thinnest
     sentence = (
-        f"the layer is {thickness:.3g} times as thick as the contact at rest is long; half the "
-        f"contact length is up to {largest(theta):.2g} times the thickness, up to "
-        f"{np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is allowed with "
+        f"the layer is {np.min(cover.thinnest):.3g} times as thick as the contact at rest is long; "
+        f"half the contact length is up to {largest(theta):.2g} times the thickness, up to "
+        f"{min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
         "coupled=False, where the contact sticks in front and slips behind; the table of the "
         "coupled solution, from which states with traction are otherwise, needs no limit"
     )
@@ -405,12 +403,10 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     Raises ParameterError for kappa |V| above 1e300, shapes that do not broadcast, and a layer too
     thin for its law.
     """
-    cover = scene.cover
-    assert cover is not None
     by_base, by_cylinder, free, star = evaluate_contact(
         scene.uncoupled,
         np.abs(V),
-        creep=np.zeros(()),
+        np.zeros(()),
         creep_is_omega=False,
         names=("excess_half_space", "excess_cylinder", "delta_0", "delta_star"),
     ).values()
@@ -418,9 +414,10 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     limited = np.minimum(2.0 * np.abs(by_base + (1.0 + free) * by_cylinder) / star, 1.0)
     with np.errstate(divide="ignore"):
         value = limited / (1.0 - limited**4) ** 0.25
-    error = stated_error(float(np.min(cover.thinnest))) + _LEAST_SHEAR_ERROR
-    error = error + _SHEAR_ERROR * np.minimum(value, 1.0)
-    levers = np.abs(free) + 0.5 * star * np.minimum(value, 1.0)
+    effect = np.minimum(value, 1.0)
+    cover: Any = scene.cover
+    error = stated_error(np.min(cover.thinnest)) + _LEAST_SHEAR_ERROR + _SHEAR_ERROR * effect
+    levers = np.abs(free) + 0.5 * star * effect
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     most = largest(value)
     beyond = (
@@ -429,16 +426,15 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     )
     errors = (
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
-        f"M up to {largest(error_of_M):.1g} P l0" + (beyond if most > 1.0 else "")
+        f"M up to {largest(error_of_M):.1g} P l0" + beyond * (most > 1.0)
     )
+    sentence = f"shear acts back on the pressure; compared with method='coupled' {errors}"
     if scene.tabulated:
         sentence = (
             "shear acts back on the pressure: states with traction are from a table of both solved "
             f"together; with coupled=False {errors}"
         )
-        return Assumption(np.full(np.shape(value), True)[()], value, sentence)
-    sentence = f"shear acts back on the pressure; compared with method='coupled' {errors}"
-    return Assumption(value <= 1.0, value, sentence)
+    return Assumption((value <= 1.0) | scene.tabulated, value, sentence)
 
 
 # --- Which assumptions of the model a state violates ---
@@ -490,13 +486,14 @@ def validity(
     True
     """
     _, scene, scale = resolve_model(roller, "validity")
-    speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
-    given = {name: check_array(name, value, unit=scale) for name, value in speeds.items()}
+    V = check_array("V", V, unit=scale)
+    spin = None
     with np.errstate(over="ignore"):
-        scaled = {name: divide_by_unit(name, array, scale[name]) for name, array in given.items()}
-    speed = scaled["V"]
-    spin = scaled.get("omega")
-    broadcast_shape(**given, **scene.numbers)
+        if omega is not None:
+            omega = check_array("omega", omega, unit=scale)
+            spin = divide_by_unit("omega", omega, scale["omega"])
+        speed = divide_by_unit("V", V, scale["V"])
+    broadcast_shape(V=V, omega=omega, **scene.numbers)
     law = scene.uncoupled  # no table is made for a report
     if scene.cover is None:
         free = FreeRolling.of_scene(law, speed)
@@ -528,10 +525,9 @@ def validity(
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
         report = report._replace(creep=assess_creep(delta, full_slip))
     if roller.body_data is not None:
-        return roller.body_data.extend_validity(
-            report, lam, V=given["V"], omega=given.get("omega"), density=density
-        )
+        return roller.body_data.extend_validity(report, lam, V, omega=omega, density=density)
     if density is not None:
-        sentence = "density needs a Cylinder: a Scene has no wave speed"
-        raise ParameterError("density", density, "None", sentence)
+        raise ParameterError(
+            "density", density, "None", "density needs a Cylinder: a Scene has no wave speed"
+        )
     return report

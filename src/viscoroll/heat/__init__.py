@@ -246,7 +246,7 @@ class Temperatures(Equilibria):
         state = zeros.state[order]
         count = np.bincount(state, minlength=states.load.size)
         table = np.array([*(rows[name] for name in self._rows), zeros.stable, inside])[:, order]
-        *fields, stable, measured = pad(table, state, count, states.shape)
+        *fields, stable, measured = pad(table, count, states.shape)
         found = dict(zip(self._rows, fields))
         found |= {"stable": stable == 1.0, "measured": measured == 1.0}
         found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
