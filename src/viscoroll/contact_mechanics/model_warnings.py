@@ -245,7 +245,7 @@ def warn_of_start(
             _warn_of_faults([_FASTER_THAN_WAVES], "motion", "validity() of cylinder or result")
     numbers = [*(getattr(scene, name) for name in PARAMETERS), V0, omega0]
     if type(V0) is type(omega0) is float and not scene.shape:
-        faults = _start_faults(scene.material, *numbers, driven)
+        faults = _start_faults(scene.material, driven, *numbers)
     else:
         faults = _worst_start_faults(scene, numbers, driven)
     if data is not None:
@@ -255,6 +255,7 @@ def warn_of_start(
 
 def _start_faults(
     material: Any,
+    driven: bool,
     alpha: float,
     kappa: float,
     mu: float,
@@ -262,7 +263,6 @@ def _start_faults(
     j: float,
     V0: float,
     omega0: float,
-    driven: bool,
 ) -> list[str]:
     """Return sentences on what the model does not describe in one motion, judged by its start.
 
@@ -361,7 +361,7 @@ def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> 
     faults: list[str] = []
     for worst in {np.argmax(measure) for measure in (-kappa, slips, unsteady)}:
         material = scene.material if several is None else several[examined[worst]]
-        faults += _start_faults(material, *columns[:, worst].tolist(), driven)
+        faults += _start_faults(material, driven, *columns[:, worst].tolist())
     return list(dict.fromkeys(faults))
 
 
