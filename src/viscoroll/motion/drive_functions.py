@@ -7,9 +7,10 @@ material.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder
 
 from ..core import (
     Feedback,
@@ -98,11 +99,8 @@ class DriveFunctions:
         different numbers of motions, both other than 1.  Whether the two numbers agree is not
         checked here.
         """
-        counts = {name: len(f.terms) for name, f in self.functions.items()}
-        counts["slope"] = self.tangent.size
-        shape = broadcast_shape(
-            **{name: np.empty(count) for name, count in counts.items() if count != 1}
-        )
+        own = {name: f.terms[:, 0, 0] for name, f in self.functions.items() if len(f.terms) != 1}
+        shape = broadcast_shape(**own, slope=self.tangent)
         return shape[0] if shape else 1, self.gains.shape[1]
 
     @cached_property
@@ -223,21 +221,9 @@ class DriveFunctions:
 UNDRIVEN = DriveFunctions({}, np.zeros(()), prescribed="", gains=np.zeros((4, 1)), end=0.0)
 
 
-class DrivenStart(NamedTuple):
-    """The checked drive of motions with their start speeds, dimensionless.
-
-    functions : functions of time that drive the motions; of free motions :data:`UNDRIVEN`.
-    V0, omega0 : start speeds, numbers or (n,); a prescribed one has its value at t = 0.
-    """
-
-    functions: DriveFunctions
-    V0: Any
-    omega0: Any
-
-
 def prepare_drive(
     drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None
-) -> DrivenStart:
+) -> tuple[DriveFunctions, Any, Any]:
     """Check a drive and the start speeds, and fit its callables.
 
     drive: :class:`Drive`, dimensionless.
@@ -249,11 +235,12 @@ def prepare_drive(
     both prescribed, or a load beside the prescribed speed from which it follows; for a start that
     is missing, out of range, or not the prescribed one; for shapes of V0 and omega0 that do not
     broadcast.  Exceptions of a callable pass.
-    Returns the :class:`DrivenStart`; its ``functions`` are :data:`UNDRIVEN` where the drive is
-    empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
+    Returns (functions of time that drive the motions; V0; omega0), dimensionless, speeds as numbers
+    or (n,); a prescribed one has its value at t = 0.  The functions are :data:`UNDRIVEN` where the
+    drive is empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
     if not drive.acts:
-        return DrivenStart(UNDRIVEN, *start_speeds(V0, omega0))
+        return UNDRIVEN, *start_speeds(V0, omega0)
     tangent = np.asarray(slope_tan_cos(drive.slope)[0])
     _refuse_both(drive)
     prescribed = "omega" if drive.omega is not None else "V" if drive.V is not None else ""
@@ -277,7 +264,7 @@ def prepare_drive(
             raise ParameterError(
                 f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it"
             )
-    return DrivenStart(checked_drive, *start_speeds(*starts.values()))
+    return checked_drive, *start_speeds(*starts.values())
 
 
 def _refuse_both(drive: Drive) -> None:
@@ -324,7 +311,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
         start = np.array([float(speed(0.0))])
     if stated is not None:
         given = check_array(f"{name}0", stated)
-        broadcast_shape(**{f"{name}0": given, name: start if start.size > 1 else np.empty(())})
+        broadcast_shape(**{f"{name}0": given, name: start})
         differ = np.abs(given - start) > _START * scale
         if differ.any():
             text = (
@@ -359,26 +346,8 @@ def _gains(drive: Drive) -> Floats:
     }
     drag = check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
     gains["gain of torque on omega"] = gains["gain of torque on omega"] - drag
-    count = broadcast_shape(**gains)
-    return np.array([np.broadcast_to(gain, count) for gain in gains.values()])
-
-
-def refuse_rest(rest: Any, functions: DriveFunctions) -> None:
-    """Raise ParameterError where a motion is to end at rest while something drives it to the end.
-
-    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is
-    not examined but only quoted in the message, so that the caller must not call this function
-    where it is None.
-    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`.
-    Returns None where the motion may end at rest.
-    """
-    if functions.acts_at_end:
-        sentence = (
-            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
-            "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
-            "time at which a brake stops the cylinder)"
-        )
-        raise ParameterError("rest", rest, "None", sentence)
+    broadcast_shape(**gains)
+    return np.array(np.broadcast_arrays(*gains.values()))
 
 
 # --- Layout of the kernels ---
@@ -400,7 +369,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     first = values_at_start(speed.terms)
     last = speed.terms.sum(axis=-1)
     # for each motion by itself: a slow one must not jump either
-    scale = np.maximum(np.abs(speed.terms).max(axis=(1, 2), initial=0.0), 1e-300)[:, None]
+    scale = np.abs(speed.terms).max(axis=(1, 2), initial=1e-300)[:, None]
     least = _ROUNDING_OF_JUMP * scale + 4.0 * speed.error
     jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # in pieces without length
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
@@ -409,8 +378,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
         text = f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed"
         raise dimensionless_error(name, text, "t", when, motion=n)
-    terms = np.zeros_like(speed.terms)
-    terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1])
+    terms = np.ascontiguousarray(polyder(speed.terms, axis=-1))
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 
@@ -434,17 +402,16 @@ def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
     """Set the value at the left end of pieces to 0 where it is rounding, as it would move a
     cylinder at rest.
 
-    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms).
+    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms); changed in place: a
+    value that counts as rounding is subtracted from the constant coefficient.
     rounding: ratio of that value to the sum of the magnitudes of the coefficients below which it
     counts as rounding.
-    Returns new coefficients, (..., terms).  Where the value counts as rounding it is subtracted
-    from the constant coefficient; all others are the same.
+    Returns ``terms``.
     """
     first = values_at_start(terms)
     size = np.abs(terms).sum(axis=-1)
-    shifted = terms.copy()
-    shifted[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
-    return shifted
+    terms[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
+    return terms
 
 
 def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
@@ -462,7 +429,7 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     """
     rows = max(len(f.starts) for f in functions)
     own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
-    starts = np.sort(np.concatenate(own, axis=1), axis=1)
+    starts = np.sort(np.hstack(own), axis=1)
     # of equal starts, as 0 of all functions, the last is kept
     starts = starts[:, (ends_of(starts) > starts + _INSTANT).any(axis=0)]
     kept = max(int((starts < end).any(axis=0).sum()), 1)
@@ -480,14 +447,15 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     # index of the last piece of each motion that starts before the end
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
-    if late.any():  # the last piece before the end acts after it too
-        acting = np.take_along_axis(coefficients, at_end[:, None, None], axis=1)
-        coefficients[:] = np.where(late[..., None], acting, coefficients)
+    # the last piece before the end acts after it too
+    acting = np.take_along_axis(coefficients, at_end[:, None, None], axis=1)
+    np.copyto(coefficients, acting, where=late[..., None])
     return packed
 
 
 def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
-    """Return the coefficients of a function over finer pieces.
+    """Return the coefficients of a function over finer pieces, by Horner's scheme with x -> shift +
+    scale x in those that are parts of its own.
 
     function: :class:`Piecewise` of one motion or of m motions.
     starts, ends: when the finer pieces start and end, (1 or m, k), in T_ref; none extends over a
@@ -498,13 +466,24 @@ def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
     piece = _piece_at(function.starts, starts)
     first, last = (np.take_along_axis(t, piece, 1) for t in (function.starts, function.ends))
     terms = np.take_along_axis(function.terms, piece[..., None], 1)
-    # a piece that is not cut keeps its terms to the bit
-    same = (first == starts) & (last == ends)
-    return _start_at_zero(
-        np.where(
-            same[..., None], terms, _substitute(terms, first, last=last, starts=starts, ends=ends)
-        )
+    # a piece that is not cut keeps its terms to the bit; the one without end is constant
+    cut = np.isfinite(last) & ((first != starts) | (last != ends))
+    cut = np.broadcast_to(cut, terms.shape[:2])
+    first, last, starts, ends = (
+        np.broadcast_to(times, cut.shape)[cut] for times in (first, last, starts, ends)
     )
+    scale = (ends - starts) / (last - first)
+    # the middle of the part in the x of the whole piece
+    shift = (starts - first) / (last - first) * 2.0 - 1.0 + scale
+    whole = terms[cut]
+    part = np.zeros_like(whole)
+    for n in range(whole.shape[-1] - 1, -1, -1):
+        raised = np.zeros_like(part)
+        raised[..., 1:] = part[..., :-1] * scale[..., None]
+        part = part * shift[..., None] + raised
+        part[..., 0] += whole[..., n]
+    terms[cut] = part
+    return _start_at_zero(terms)
 
 
 def _piece_at(begins: Floats, times: Floats) -> NDArray:
@@ -521,29 +500,3 @@ def _piece_at(begins: Floats, times: Floats) -> NDArray:
     row = np.arange(len(begins))[:, None]
     found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * times, side="right")
     return found - row * begins.shape[1] - 1
-
-
-def _substitute(
-    terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray
-) -> Floats:
-    """Return the coefficients of polynomials on parts of their pieces, by Horner's scheme with x ->
-    shift + scale x.
-
-    terms: coefficients of powers of x in [-1, 1], ascending, (m, k, terms).
-    first, last: start and end of each piece, (1 or m, k).
-    starts, ends: start and end of each part, (1 or m, k), in the unit of ``first``.
-    Returns the coefficients on the parts, (m, k, terms).  Of a piece without length, or without end
-    (``last`` infinite), they are those of a constant: its value at x = 0.
-    """
-    endless = np.isinf(last) | (last == first)
-    length = np.where(endless, 1.0, last - first)
-    scale = np.where(endless, 0.0, (ends - starts) / length)
-    # the middle of the part in the x of the whole piece
-    shift = np.where(endless, 0.0, (starts - first) / length * 2.0 - 1.0 + scale)
-    result = np.zeros_like(terms)
-    for n in range(terms.shape[-1] - 1, -1, -1):
-        raised = np.zeros_like(result)
-        raised[..., 1:] = result[..., :-1] * scale[..., None]
-        result = result * shift[..., None] + raised
-        result[..., 0] += terms[..., n]
-    return result

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
@@ -39,7 +40,7 @@ from ..core import (
 from .flow import FlowResult
 from .many_motions import Batch, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
-from .motion_datasets import RollResult
+from .motion_datasets import RollResult, ensemble_dataset
 from .motion_problem import MotionProblem, SolverOptions, make_problem
 
 # --- The result of many motions ---
@@ -130,8 +131,10 @@ class Ensemble(RollResult):
         >>> vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0).messages()
         {'reached the last output time': 2}
         """
-        codes, counts = np.unique(self.status, return_counts=True)
-        return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
+        return {
+            MotionStatus(code).message: count
+            for code, count in sorted(Counter(self.status.tolist()).items())
+        }
 
     def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> Dataset:
         """Compute moments, quantiles and histograms over the motions, per output time, named as
@@ -235,11 +238,11 @@ class Ensemble(RollResult):
         >>> motions.fastest().V
         array([1., 2.])
         """
-        speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
+        speeds = {name: np.abs(self[f"{name}0"]) for name in ("V", "omega")}
         for name, start in speeds.items():
-            if (values := getattr(self, name)) is not None:
+            if (values := self[name]) is not None:
                 speeds[name] = np.fmax(start, np.fmax.reduce(np.abs(values), axis=1))
-        index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
+        index = np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64)
         # +0 from rest: friction moves the axis in the sense of the rotation
         sense = self.V0 * self.omega0 + 0.0
         return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
@@ -258,7 +261,7 @@ class Ensemble(RollResult):
         ]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
-            if (values := getattr(self, name)) is not None and values.size:
+            if (values := self[name]) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]
                 low, middle, high = (
                     np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
@@ -297,8 +300,6 @@ class Ensemble(RollResult):
         >>> motions.to_xarray()["V"].dims
         ('motion', 't')
         """
-        from .motion_datasets import ensemble_dataset
-
         return ensemble_dataset(self)
 
     def _figure(self) -> Figure:
@@ -431,15 +432,13 @@ def ensemble(
     check_choice("method", method, "auto", "flow", "integrate")
     start, drive, labels = strip_units(
         (V0, omega0),
-        Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V),
+        Drive(force, torque, slope, brake, drag, omega, V),
         units,
     )
     progress = check_bool("progress", progress)
     if speed is not None:
         speed = check_number("speed", speed, unit=units, above=0.0)
-    options = SolverOptions(
-        rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
-    )
+    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
     problem = make_problem(roller, start, drive=drive, end=times[-1], options=options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
     problem.warn_of_start(start)
@@ -490,8 +489,8 @@ def _broadcast_inputs(
     kappa, mu, gamma, j, V0, omega0, dimensionless; n, which is 1 if all are numbers).
     Raises ParameterError where they, the functions of the drive included, do not broadcast to (n,).
     """
-    arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
-    arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
+    inputs = problem.scene.numbers | {"V0": problem.V0, "omega0": problem.omega0}
+    arrays = {name: np.asarray(value) for name, value in inputs.items()}
     # stand-ins with as many entries as the drive has motions, for the shapes alone
     counts = zip(("drive", "gains"), problem.functions.counts, strict=True)
     own = {name: np.zeros(n) for name, n in counts if n > 1}
@@ -506,8 +505,7 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
     """Convert the motions of an ensemble to the fields of :class:`Ensemble`, in the units of its
     roller.
 
-    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs, rows and the size of
-        immobile are read.
+    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs and rows are read.
     found: :class:`.flow.FlowResult`, dimensionless; of a cylinder its quantities are overwritten
         by those in SI units.
     Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are
@@ -516,7 +514,6 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
     switches, (n,); drive_error, a float, which stays dimensionless.
     """
     scale = batch.problem.roller.scale
-    shape = (batch.immobile.size,)
     rows = dict(zip(batch.rows, found.out, strict=True))
     times = {
         "onset_time": found.onset,
@@ -528,7 +525,15 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
         for name in rows:
             # a unit for each motion is a column; in place, as the rows may fill the memory
             rows[name] *= np.reshape(scale[name], (-1, 1))
-        times = {name: value * scale[name] for name, value in times.items()}
-    times = {name: np.broadcast_to(value, shape) for name, value in times.items()}
-    notes = {"status": found.status, "switches": found.switches}
-    return rows | times | notes | {"drive_error": batch.problem.functions.error}
+    return (
+        rows
+        | {
+            name: np.broadcast_to(value * scale[name], found.status.shape)
+            for name, value in times.items()
+        }
+        | {
+            "status": found.status,
+            "switches": found.switches,
+            "drive_error": batch.problem.functions.error,
+        }
+    )

@@ -17,7 +17,7 @@ from __future__ import annotations
 import hashlib
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,7 +28,8 @@ from ..core import Floats, Integers, NDArray, broadcast_vector, load_kept, run_b
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, FlowTables
 from ..kernels.numerics.cache_folder import cache_root
-from ..kernels.records import Motions
+from ..kernels.numerics.jit import sources_digest
+from ..kernels.records import Flow, Motions
 from ..laws import interleave_pairs
 from ..laws.law_table import law_table
 from ..materials import Prony
@@ -73,8 +74,7 @@ class FlowMap:
         moment of inertia divided by m R^2; 0 for elastic bodies.
         """
         material, _, _, j = self.parameters
-        T_mean = material.T_mean if isinstance(material, Prony) else (material - 1.0) / material
-        return T_mean / (1.0 + j)
+        return law_table(material).T_mean / (1.0 + j)
 
     def stated_error(self, *, path: bool, loss: bool) -> float:
         """Return the largest stated error, relative, of the speeds and, if requested, of path and
@@ -94,23 +94,20 @@ def folder() -> Path:
 
     It may not exist yet.
     """
-    return cache_root() / f"flow-{_digest(Path(__file__).parents[1])}"
+    return cache_root() / f"flow-{_digest()}"
 
 
-@lru_cache(maxsize=1)
-def _digest(package: Path) -> str:
+@cache
+def _digest() -> str:
     """Return a digest of all sources on which the bits of a map depend: kernels, materials and
     motions.
 
-    package: folder of the package.
     Returns a text of the first 16 hexadecimal digits of the SHA-256; it is computed once in a
     process.
     """
-    from ..kernels.numerics.jit import sources_digest
-
     digest = hashlib.sha256(sources_digest().encode())
     for part in ("materials", "motion"):
-        for path in sorted((package / part).rglob("*.py")):
+        for path in sorted((Path(__file__).parents[1] / part).rglob("*.py")):
             digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -151,26 +148,24 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     write to it or to a folder above it, or if one belongs to another user; None with a
     RuntimeWarning if its content is damaged or of other parameters.
     """
-    damaged = "the cached flow map cannot be used ({}) and is built again"
-    return load_kept(path, damaged, lambda data: _read(data, parameters))
 
+    def read(data: Any) -> FlowMap:
+        """Return the :class:`FlowMap` in the arrays of a file.
 
-def _read(data: Any, parameters: tuple[Any, ...]) -> FlowMap:
-    """Return the :class:`FlowMap` in the arrays of a file.
+        data: arrays by name.
+        Raises ValueError for one of another scene, and KeyError for one that lacks an array.
+        """
+        if not np.array_equal(data["parameters"], _numbers(parameters)):
+            raise ValueError("it was made for other parameters")
+        return FlowMap(
+            parameters=parameters,
+            first=int(data["first"]),
+            table=data["table"],
+            errors=tuple(data["errors"].tolist()),
+            problem=str(data["problem"]),
+        )
 
-    data: arrays by name.
-    parameters: (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
-    Raises ValueError for one of another scene, and KeyError for one that lacks an array.
-    """
-    if not np.array_equal(data["parameters"], _numbers(parameters)):
-        raise ValueError("it was made for other parameters")
-    return FlowMap(
-        parameters=parameters,
-        first=int(data["first"]),
-        table=data["table"],
-        errors=tuple(data["errors"].tolist()),
-        problem=str(data["problem"]),
-    )
+    return load_kept(path, "the cached flow map cannot be used ({}) and is built again", read)
 
 
 def save(new_map: FlowMap, path: Path) -> None:
@@ -307,8 +302,9 @@ def fill_tables(new_map: FlowMap, threads: int | None) -> None:
     if new_map.slow_rate == 0.0:
         raise NoFlowMap("an elastic cylinder never slows down")
     parts = flow_layout.views(new_map.table)
+    law = law_table(new_map.parameters[0]).record
     problem = FlowProblem(
-        new_map.parameters, law_table(new_map.parameters[0]).record, new_map.slow_rate, threads
+        *new_map.parameters, law=law, slow_rate=new_map.slow_rate, threads=threads
     )
     with np.errstate(all="ignore"):  # what is not finite is refused
         _fill_full_slip(problem, parts)
@@ -336,7 +332,7 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     onset of partial slip is no unique function of the quantity that is constant while sliding; for
     OUT_OF_RANGE where numbers leave the range of doubles.
     """
-    _, kappa, mu, j = problem.parameters
+    _, kappa, mu, j, *_ = problem
     V = SPEEDS.x / kappa
     # below the lowest speed V' is +-mu: T and X from rest to there are V/mu and V^2/(2 mu)
     least = 2.0**flow_layout.LOW / kappa
@@ -361,9 +357,7 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         time = NODES.powers(T)
         path = NODES.powers(X)
         onset = NODES.powers(slip)
-        parts.slide[n] = np.concatenate(
-            [interleave_pairs(time, NODES.powers(limit)), path], axis=-1
-        )
+        parts.slide[n] = np.hstack([interleave_pairs(time, NODES.powers(limit)), path])
         # nearly held: the inverse would end before the speeds that are served; the sum of powers is
         # T at the end of the third octave from the top, the highest one that is served
         if not kappa * mu * time[-3].sum() < 2.0 ** (flow_layout.HIGH - 1):
@@ -372,11 +366,11 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
         # over kappa |I|/(1 + j); u is kappa |V| at onset
         u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
-        values = [
+        V_on, T_on, X_on = (
             NODES.powers(value)
             for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))
-        ]
-        parts.onset[n] = np.concatenate([interleave_pairs(*values[:2]), values[2]], axis=-1)
+        )
+        parts.onset[n] = np.hstack([interleave_pairs(V_on, T_on), X_on])
 
 
 def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
@@ -406,16 +400,15 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
     near[:, 1] = near[:, 0] * (1.0 + mu / kappa * rng.uniform(-0.5, 0.5, near.shape[0]))
     errors = np.zeros((_SAMPLE_SIZE, 3))
 
-    def work(start: int, stop: int) -> None:
-        for n in range(start, stop):
-            errors[n] = _motion_errors(new_map, *starts[n])
+    def work(n: int, stop: int) -> None:
+        errors[n] = _motion_errors(new_map, starts[n, :, None])
 
     run_blocks(work, _SAMPLE_SIZE, 1, threads=threads)
     worst = np.maximum(_MARGIN * errors.max(axis=0), _FLOOR)
     return tuple(worst.tolist())
 
 
-def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> Floats:
+def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
     """Return the largest relative errors of one motion of a new map, against the integrator, at
     times from its onset on.
 
@@ -423,16 +416,15 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> Floats:
     onset, and the last ones at four times the time in which V falls by e at low speeds.
 
     new_map : the :class:`FlowMap`, with all tables.
-    V0, omega0 : start speeds, not both 0, dimensionless.
+    start : V0 and omega0, not both 0, dimensionless, (2, 1).
     Returns (error of V and omega divided by the larger of the two, or error of the onset time
     divided by that time and the relaxation time there, if larger; error of distance and angle,
     divided by the larger so far and 1e-5 of that at rest; error of both losses, divided by the
     energy at the start), (3,).  An error that is not finite is infinite; all are 0 for a motion
     outside the map.
     """
-    _, _, _, j = new_map.parameters
+    V0, omega0 = start
     decay = 1.0 / new_map.slow_rate
-    start = (np.array([V0]), np.array([omega0]))
 
     def flow(times: NDArray) -> FlowResult:
         """Look the motion up in the new map with gamma = 1.
@@ -447,31 +439,29 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> Floats:
     at_rest = flow(np.array([0.0, 800.0 * decay]))
     # NaN, of a motion that starts in partial slip, becomes 0
     onset = float(np.fmax(at_rest.onset[0], 0.0))
-    stiff_time = _stiff_time(new_map, max(abs(V0), abs(omega0)))
+    stiff_time = _stiff_time(new_map, np.abs(start).max())
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
     late = np.linspace(0.1, 4.0, 6) * decay
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return np.zeros(3)
-    exact, how = integrate_motions(new_map.parameters, start, np.ones(1), times)
+    exact, true_onset = integrate_motions(new_map.parameters, (V0, omega0), np.ones(1), times)
     out = exact[list(_MEASURED_ROWS), 0]
-    # columns of integrate(): status, steps, changes of regime, onset time, rest time
-    true_onset = how[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
     path = (
         np.maximum.accumulate(np.abs(out[2:4]).max(axis=0))
         + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
     )
-    energy = 0.5 * (V0 * V0 + j * omega0 * omega0)
+    energy = 0.5 * (V0 * V0 + new_map.parameters[3] * omega0 * omega0).item()
     errors = [
         (difference[:2] / speed).max(),
         (difference[2:4] / path).max(),
         difference[4:].max() / energy,
     ]
     if onset > 0.0:
-        errors[0] = max(errors[0], abs(onset - true_onset) / (onset + stiff_time))
+        errors[0] = max(errors[0], abs(onset - true_onset.item()) / (onset + stiff_time))
     return np.where(np.isfinite(errors), errors, math.inf)
 
 
@@ -547,7 +537,6 @@ def look_up_ensemble(
     and their other entries are undefined.
     """
     from ..kernels.motion.flow_loop import look_up_motions
-    from ..kernels.records import Flow
 
     # in their own lengths, but contiguous and read-only, as kernels are compiled for
     V0, omega0, times = (

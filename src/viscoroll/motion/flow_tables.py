@@ -269,7 +269,7 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
         below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
         to_go.append(NODES.powers(NODES.integrals(slope, rows.half, below) / problem.slow_rate))
     speeds = NODES.powers(V), NODES.powers(delta)
-    slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.parameters[1])
+    slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.kappa)
     slow = SlowManifold(
         rows=rows,
         speeds=speeds,
@@ -277,8 +277,8 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
         loss=to_go[2],
         slow_log=NODES.powers(slow_log),
     )
-    parts.slow[: len(V)] = np.concatenate(
-        [interleave_pairs(*speeds), interleave_pairs(*slow.path), slow.loss], axis=-1
+    parts.slow[: len(V)] = np.hstack(
+        [interleave_pairs(*speeds), interleave_pairs(*slow.path), slow.loss]
     )
     parts.manifold[:] = interleave_pairs(
         slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log))
@@ -302,18 +302,17 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     its value at the first of these states; V; delta at their nodes, (rows, nodes) each,
     dimensionless).
     """
-    kappa = problem.parameters[1]
-    j = problem.parameters[3]
     rate = problem.slow_rate
-    V = np.array([2.0 ** (flow_layout.HIGH + _RUN_IN_OCTAVES) / kappa])
+    V = np.array([2.0 ** (flow_layout.HIGH + _RUN_IN_OCTAVES) / problem.kappa])
     delta = np.zeros(1)
     gamma = np.ones(1)
     halves = []
     steps = []
     # a step is the time from V to V/2 with M/V as in the middle: (1 + j) V' = -M in time gamma t
-    while kappa * V[0] > _SLOW_LOG_ORIGIN:
+    while problem.kappa * V[0] > _SLOW_LOG_ORIGIN:
         between = 0.75 * V
-        step = math.log(2.0) * (1.0 + j) * between / problem.contact_states(between)[MOMENT]
+        moment = problem.contact_states(between)[MOMENT]
+        step = math.log(2.0) * (1.0 + problem.j) * between / moment
         (V,), (delta,) = problem.integrate(V, delta, gamma=gamma, t=step, reason=FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
             raise NoFlowMap(OUT_OF_RANGE)
@@ -384,7 +383,7 @@ def fill_layers(
     where a motion of the layer leaves partial slip, and for OUT_OF_RANGE where its start is not
     finite or k0 not positive.
     """
-    kappa = problem.parameters[1]
+    kappa = problem.kappa
     onsets = octaves(first, first + flow_layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
     k0 = _stiff_rate(problem, V0)
@@ -423,14 +422,13 @@ def fill_layers(
     above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
     excess = [_pad(_COARSE.powers(value)) for value in (x, angle, lost)]
-    asymptote[:] = np.concatenate(
+    asymptote[:] = np.hstack(
         [
             interleave_pairs(slow_log_at_V + _pad(above), rates),
             _pad(split_powers),
             interleave_pairs(*excess[:2]),
             excess[2],
-        ],
-        axis=-1,
+        ]
     )
 
 
@@ -442,7 +440,7 @@ def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     V : speeds, > 0, dimensionless, of any shape.
     Returns the rates, > 0, dimensionless, in the shape of V.
     """
-    return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V)[STIFFNESS] / V
+    return (1.0 + 1.0 / problem.j) * problem.contact_states(V)[STIFFNESS] / V
 
 
 def _state_before_onset(
@@ -460,15 +458,14 @@ def _state_before_onset(
     to split, or 1/k0 where the split is still sought; > 0, (n,), dimensionless.
     Returns (V, delta), (n,) each, dimensionless, to first order in that time.
     """
-    _, _, mu, j = problem.parameters
     state = problem.contact_states(V)
-    push = sign * mu
+    push = sign * problem.mu
     half_moment = 0.5 * state[MOMENT]
     tau = _LEAD * gamma
     # full slip: V' = push - M/2 and j omega' = -(push + M/2) in time gamma t, backward from onset
     before = V - tau * (push - half_moment)
     return before, (
-        V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / j
+        V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / problem.j
     ) / before - 1.0
 
 
@@ -524,9 +521,9 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
     """
     powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
     powers[:, 0] = 1.0
-    if sign != np.sign(1.0 - problem.parameters[3]):
+    if sign != np.sign(1.0 - problem.j):
         return powers
-    V = (onsets.node_positions(_SPLIT_NODES) / problem.parameters[1]).ravel()
+    V = (onsets.node_positions(_SPLIT_NODES) / problem.kappa).ravel()
     gamma = 1.0 / _stiff_rate(problem, V)
     _, delta = problem.integrate(
         *_state_before_onset(problem, sign, V, gamma), gamma, _LEAD + _CROSSINGS, STICK_ENDS

@@ -28,7 +28,7 @@ from ..laws import record_of_alphas, record_of_materials
 from ..laws.law_table import law_table
 from ..materials import Bodies
 from .flow import FlowResult, flow_map, look_up_ensemble
-from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES, dimensionless_error
+from .motion_arguments import LOSSES, SPEED_RANGE, STATES, dimensionless_error
 from .motion_problem import MotionProblem, integrate
 
 #: Motions in a block of work where all are integrated: some hundredths of a second.
@@ -197,7 +197,6 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     """
     problem = batch.problem
     law = _law_of(problem.scene, problem.unsteady)
-    rows = np.array([ROWS.index(name) for name in batch.rows], np.int64)
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -210,19 +209,18 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:
             return
-        inputs = batch.inputs.values()
         alpha, *others = (
             broadcast_vector(array[left], left.shape) if array.size > 1 else array
-            for array in inputs
+            for array in batch.inputs.values()
         )
-        arguments = (
+        found.out[:, left], info = integrate(
+            left.size,
             (*law(alpha, left), *others),
-            problem.functions.for_kernel(left),
-            batch.times,
-            problem.limits,
-            rows,
+            drive=problem.functions.for_kernel(left),
+            times=batch.times,
+            limits=problem.limits,
+            rows=batch.rows,
         )
-        found.out[:, left], info = integrate(left.size, *arguments)
         (
             found.status[left],
             steps[left],
@@ -231,15 +229,10 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
             found.rest[left],
         ) = info.T
 
+    block = _MAPPED_BLOCK if found.status.max(initial=-1) >= 0 else _BLOCK
     # with the added mass and a material each the law is that of one motion
-    mapped = found.status.max(initial=-1) >= 0
-    block = (
-        _MAPPED_BLOCK
-        if mapped
-        else 1
-        if problem.unsteady and np.ndim(problem.scene.alpha)
-        else _BLOCK
-    )
+    if problem.unsteady and np.ndim(problem.scene.alpha):
+        block = 1
     block = problem.functions.block(block)
     run_blocks(work, steps.size, block, threads=batch.threads, progress=batch.progress)
     return steps

@@ -4,6 +4,7 @@ gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -35,7 +36,7 @@ from ..core import (
 
 #: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no
 #: longer proportional.
-RTOL_RANGE = (1e-12, 1e-2)
+RTOL_RANGE = {"low": 1e-12, "high": 1e-2}
 #: Smallest and largest start speed, dimensionless: beyond them intermediate results leave the range
 #: of doubles.
 SPEED_RANGE = (1e-300, 1e100)
@@ -69,26 +70,19 @@ def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number.
 
     arguments: name of an argument of ``roll`` -> its value.  Numbers, arrays of shape () and None
-    pass, and so does what is no array, which is checked elsewhere.
+    pass, and so does what is no array, which is checked elsewhere; a nested list of unequal lengths
+    counts as a vector of lists.
     The error is that of the first argument with axes, also of shape (1,); without one None is
     returned.
     """
     for name, value in arguments.items():
-        if type(value) is not float and (shape := _shape(value)):
+        try:
+            shape = tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
+        except (TypeError, ValueError):
+            shape = ()
+        if shape:
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
             raise ParameterError(name, shape, "a single number", sentence)
-
-
-def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument as an array.
-
-    value: an argument of any type; a nested list of unequal lengths counts as a vector of lists.
-    Returns a tuple of ints; () for a number, None and all else that has no shape.  Never raises.
-    """
-    try:
-        return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
-    except (TypeError, ValueError):
-        return ()
 
 
 def controls(
@@ -109,13 +103,11 @@ def controls(
     number, not positive and finite or in a unit of another dimension, max_steps outside [1, 10^7]
     or no whole number.
     """
-    low, high = RTOL_RANGE
-    if not low <= check_number("rtol", rtol) <= high:
-        raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = (
-        0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"]
+    return (
+        check_number("rtol", rtol, **RTOL_RANGE),
+        0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"],
+        check_integer("max_steps", max_steps, 1, MOST_STEPS),
     )
-    return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
@@ -128,14 +120,9 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     of |V0| and |omega0| of each motion is 0 or at least 1e-300, and the shapes broadcast.
     """
     low, high = SPEED_RANGE
-    # each by itself: max() of a NaN and another may be the other
-    if (
-        type(V0) is float
-        and type(omega0) is float
-        and -high <= V0 <= high
-        and -high <= omega0 <= high
-    ):
-        if abs(V0) >= low or abs(omega0) >= low:
+    # max() of a number and a NaN after it is the number
+    if type(V0) is type(omega0) is float and not math.isnan(omega0):
+        if low <= max(abs(V0), abs(omega0)) <= high:
             return V0, omega0
     V = check_array("V0", V0)
     omega = check_array("omega0", omega0)
@@ -195,9 +182,7 @@ def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
     error: the :class:`ParameterError`.
     scale: :class:`Scale` of the roller.
     """
-    if not (scale.si and error.dimensionless):
-        return error
-    return error.dimensionless(scale=scale)
+    return error.dimensionless(scale=scale) if scale.si and error.dimensionless else error
 
 
 # --- What drives motions, as the caller gives it ---
@@ -261,17 +246,7 @@ class Drive(NamedTuple):
     @property
     def acts(self) -> bool:
         """Whether anything is given."""
-        # all are None; written out, as every call of roll asks
-        return not (
-            self.force
-            is self.torque
-            is self.slope
-            is self.brake
-            is self.drag
-            is self.omega
-            is self.V
-            is None
-        )
+        return any(value is not None for value in self)
 
     def without_zeros(self) -> Drive:
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times;
@@ -290,8 +265,7 @@ class Drive(NamedTuple):
         )
 
     def over(self, scale: Scale) -> Drive:
-        """Return the same drive made dimensionless; for a scene, and where nothing is given, it is
-        this drive itself.
+        """Return the same drive made dimensionless, a new :class:`Drive`.
 
         scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the
         result take the time in T_ref, the unit of time of that scale.
@@ -299,10 +273,8 @@ class Drive(NamedTuple):
         callable for many cylinders or one that cannot be called with a time alone, and an array
         whose length is not the number of cylinders.
         """
-        return (
-            Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
-            if scale.si and self.acts
-            else self
+        return Drive(
+            **{name: make_dimensionless(name, value, scale) for name, value in self.given.items()}
         )
 
 

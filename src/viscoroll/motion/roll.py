@@ -31,7 +31,7 @@ from ..core import (
     digits_beside,
 )
 from .motion_arguments import ROWS, SPEED_RANGE, Drive, output_times, strip_units
-from .motion_datasets import RollResult, Switch, describe_load, describe_values
+from .motion_datasets import RollResult, Switch, describe_load, describe_values, motion_dataset
 from .motion_problem import NO_NOTES, MotionProblem, SolverOptions, integrate_single, make_problem
 
 #: Changes of regime that are kept.
@@ -188,9 +188,8 @@ class Motion(RollResult):
         """
         reached = self.regime >= 0
         V = self.V[reached]
-        delta = self.delta[reached]
         # a finite creepage far beyond every onset of full slip, as contact() refuses infinity
-        delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
+        delta = np.clip(self.delta[reached], -1e300, 1e300)
         slowest = -SPEED_RANGE[0] * self.scale["V"]
         V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
         found = contact(self.roller, V, delta=delta, fields=fields, **options)
@@ -339,9 +338,7 @@ class Motion(RollResult):
         """
         ends = self._step_ends
         end = self._problem.end
-        return self.at(
-            np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"]
-        )
+        return self.at(np.union1d(ends[ends < end], [0.0, end]) * self.scale["t"])
 
     def _figure(self) -> Figure:
         """Return the figure of the motion at its output times; where only one was requested, at the
@@ -373,8 +370,6 @@ class Motion(RollResult):
         >>> motion.to_xarray()["V"].attrs["units"]
         'm s-1'
         """
-        from .motion_datasets import motion_dataset
-
         return motion_dataset(self)
 
 
@@ -394,11 +389,10 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     scale = problem.roller.scale
     end = problem.end
     T = scale["t"]
-    t = np.minimum(times / scale["t"], end)
+    t = np.minimum(times / T, end)
     if t[-1] != end:
         t = np.append(t, end)
-    noted = np.empty((_SWITCHES_KEPT, 2))
-    noted.fill(np.nan)
+    noted = np.full((_SWITCHES_KEPT, 2), np.nan)
     out, (status, steps, _, onset_time, rest_time) = integrate_single(
         problem, t, noted, NO_NOTES[1]
     )
@@ -564,13 +558,11 @@ def roll(
     """
     units = scale_of(roller)
     times = output_times(t, units)
-    drive = Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V)
+    drive = Drive(force, torque, slope, brake, drag, omega, V)
     # plain floats, the common case, need no search for units
     if not UNITLESS_TYPES.issuperset(map(type, (V0, omega0, *drive))):
         (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
-    options = SolverOptions(
-        rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
-    )
+    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
     problem = make_problem(
         roller, (V0, omega0), drive=drive, end=times[-1], options=options, single=True
     )

@@ -15,6 +15,7 @@ quantile of blocks lies between two values that are known to 2^-8 each
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
@@ -336,10 +337,8 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
         histograms[name] = [
             Histogram.of(np.asarray(quantity.values(motions, k)), exact) for k in times
         ]
-    codes, counts = np.unique(motions.status, return_counts=True)
-    return Summary(
-        histograms, dict(zip(codes.tolist(), counts.tolist(), strict=True)), int(motions.flow.sum())
-    )
+    statuses = Counter(np.asarray(motions.status).tolist())
+    return Summary(histograms, dict(sorted(statuses.items())), int(motions.flow.sum()))
 
 
 def merge_summaries(summaries: Iterator[Summary]) -> Summary:
@@ -382,7 +381,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
     data: dict[str, Any] = {}
     for name, histograms in total.histograms.items():
         data |= _variables(name, histograms, levels, si)
-    codes = np.array([int(code) for code in MotionStatus], np.int8)
+    codes = np.array([*MotionStatus], np.int8)
     ended = column_attributes("status") | {
         "long_name": "number of motions with each status",
         "units": "1",
@@ -390,7 +389,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
     }
     data["ended"] = (
         "status",
-        np.array([total.statuses.get(code, 0) for code in codes.tolist()]),
+        np.array([total.statuses.get(code, 0) for code in MotionStatus]),
         ended,
     )
     coords = {
