@@ -15,7 +15,6 @@ from numpy.polynomial.polynomial import polyder
 from ..core import (
     Feedback,
     Floats,
-    NDArray,
     ParameterError,
     broadcast_shape,
     check_array,
@@ -74,8 +73,8 @@ class DriveFunctions:
     Attributes
     ----------
     functions : name -> :class:`.drive_pieces.Piecewise` of what is given of "force", "torque",
-        "brake" and the prescribed speed, "omega" or "V".
-    tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
+        "brake" and the prescribed speed, "omega" or "V"; of "slope" its tangent, > 0 downhill along
+        +V, which adds to the force.
     prescribed : name of the prescribed speed, "omega", "V" or "".
     gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last
         less the drag.
@@ -83,24 +82,23 @@ class DriveFunctions:
     """
 
     functions: dict[str, Piecewise]
-    tangent: Floats
     prescribed: str
     gains: Floats
     end: float
 
     @cached_property
     def counts(self) -> tuple[int, int]:
-        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
-        all are alike.
+        """(Number of motions with functions of their own, with gains of their own); 1 if all are
+        alike.
 
         By the first :meth:`block` and :meth:`for_kernel` decide whether all motions share their
         pieces.
-        Raises ParameterError if two of the functions, or a function and the slope, have values for
-        different numbers of motions, both other than 1.  Whether the two numbers agree is not
-        checked here.
+        Raises ParameterError if two of the functions have values for different numbers of motions,
+        both other than 1.  Whether the two numbers agree is not checked here.
         """
-        own = {name: f.terms[:, 0, 0] for name, f in self.functions.items() if len(f.terms) != 1}
-        shape = broadcast_shape(**own, slope=self.tangent)
+        shape = broadcast_shape(
+            **{name: f.terms[:, 0, 0] for name, f in self.functions.items() if len(f.terms) != 1}
+        )
         return shape[0] if shape else 1, self.gains.shape[1]
 
     @cached_property
@@ -122,7 +120,7 @@ class DriveFunctions:
         :data:`_BLOCK_BYTES`.
 
         most: largest number to return, >= 1; it is returned where all motions have the same
-        functions and slope.
+        functions.
         Returns an int in 1 ... ``most``.
         Raises ParameterError as :attr:`counts` does.
         """
@@ -133,30 +131,12 @@ class DriveFunctions:
         columns = 2 + 5 * terms
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
-    def _blocks(self, count: int) -> list[slice]:
+    def blocks(self, count: int) -> list[slice]:
         """Return slices that divide ``count`` motions into blocks, ascending, a list; for 0 motions
         one slice.
         """
         step = self.block(max(count, 1))
         return [slice(first, first + step) for first in range(0, max(count, 1), step)]
-
-    def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
-        """Return the value of a prescribed speed at t = 0, and a bound of its largest magnitude.
-
-        name: name of the prescribed speed, "omega" or "V" (KeyError for one that is not
-        prescribed).
-        Raises ParameterError where it jumps.
-        Returns (values at t = 0; upper bounds of the magnitude over all times: the largest sum of
-        the magnitudes of the coefficients of a piece), dimensionless, (1,) each where the speed is
-        the same for all motions, else (m,).
-        """
-        speed = self.functions[name]
-        sizes = []
-        for part in self._blocks(len(speed.terms)):
-            curve = speed.take(part)
-            differentiate(name, curve)
-            sizes.append(np.abs(curve.terms).sum(axis=-1).max(axis=1, initial=0.0))
-        return values_at_start(speed.terms[:, 0]), np.concatenate(sizes)
 
     @cached_property
     def pieces(self) -> Floats:
@@ -167,21 +147,19 @@ class DriveFunctions:
         length, 0 where it has no length or no end; then as many coefficients of powers of x in [-1,
         1] for each of force (with the pull of the slope), torque, derivative of the prescribed
         speed, brake, prescribed speed.  The coefficients of what is not given are 0.  Here m is the
-        number of motions that have functions, times or slopes of their own.
+        number of motions that have functions or times of their own.
         Raises ParameterError where a prescribed speed jumps.
         """
         name = self.prescribed
-        force, torque, brake, speed = (
-            self.functions.get(f, _NOTHING) for f in ("force", "torque", "brake", name)
+        force, slope, torque, brake, speed = (
+            self.functions.get(f, _NOTHING) for f in ("force", "slope", "torque", "brake", name)
         )
         # the pull of the slope, over the load P cos(slope), adds to the constant term of the force
-        tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
-        tilt[:, 0, 0] = self.tangent
-        # without a prescribed speed its name is "", and both are the function that is 0
-        rate = differentiate(name, speed) if name else speed
-        return pack_pieces(
-            (force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end
-        )
+        terms = force.terms + np.zeros_like(slope.terms)
+        terms[..., :1] += slope.terms
+        # without a prescribed speed its name is "", and its rate too is the function that is 0
+        rate = differentiate(name, speed)
+        return pack_pieces((force._replace(terms=terms), torque, rate, brake, speed), self.end)
 
     def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
         """Return the drive of some motions as the kernels take it, :data:`KernelDrive`.
@@ -196,9 +174,9 @@ class DriveFunctions:
         """
         some = self
         if self.counts[0] > 1:
-            functions = {name: f.take(index) for name, f in self.functions.items()}
-            tangent = self.tangent[index] if self.tangent.size > 1 else self.tangent
-            some = replace(self, functions=functions, tangent=tangent)
+            some = replace(
+                self, functions={name: f.take(index) for name, f in self.functions.items()}
+            )
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
         return some.pieces, np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
@@ -213,12 +191,12 @@ class DriveFunctions:
             return True
         # the coefficients of the last piece, without its start and scale
         return any(
-            self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self.counts[0])
+            self.for_kernel(part)[0][:, -1, 2:].any() for part in self.blocks(self.counts[0])
         )
 
 
 #: Drive of free motions: nothing acts.
-UNDRIVEN = DriveFunctions({}, np.zeros(()), prescribed="", gains=np.zeros((4, 1)), end=0.0)
+UNDRIVEN = DriveFunctions({}, prescribed="", gains=np.zeros((4, 1)), end=0.0)
 
 
 def prepare_drive(
@@ -239,21 +217,28 @@ def prepare_drive(
     or (n,); a prescribed one has its value at t = 0.  The functions are :data:`UNDRIVEN` where the
     drive is empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
-    if not drive.acts:
+    if not drive.given:
         return UNDRIVEN, *start_speeds(V0, omega0)
-    tangent = np.asarray(slope_tan_cos(drive.slope)[0])
-    _refuse_both(drive)
+    tangent = slope_tan_cos(drive.slope)[0]
+    if drive.V is not None and drive.omega is not None:
+        raise exactly_one_error("V", "omega", both=True)
+    for name, speed, why in _BESIDE:
+        if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
+            raise ParameterError(
+                name,
+                value,
+                "left out",
+                f"{name} is given together with {speed}=: leave {name} out, as {why}",
+            )
     prescribed = "omega" if drive.omega is not None else "V" if drive.V is not None else ""
     functions = {
         name: piecewise(
             name, given, end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
         )
-        for name, given in drive.values.items()
-        if name not in ("slope", "drag")
+        for name, given in (drive.values | {"slope": tangent}).items()
+        if name != "drag"
     }
-    checked_drive = DriveFunctions(
-        functions=functions, tangent=tangent, prescribed=prescribed, gains=_gains(drive), end=end
-    )
+    checked_drive = DriveFunctions(functions, prescribed, _gains(drive), end)
     starts = {"V": V0, "omega": omega0}
     if prescribed:
         starts[prescribed] = _prescribed_start(
@@ -265,27 +250,6 @@ def prepare_drive(
                 f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it"
             )
     return checked_drive, *start_speeds(*starts.values())
-
-
-def _refuse_both(drive: Drive) -> None:
-    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one
-    is given beside it.
-
-    Beside omega these loads are the torque, the brake and the drag, beside V the force.
-
-    drive: :class:`Drive`; a field is None where nothing is given.
-    Returns None where nothing is in conflict.
-    """
-    if drive.V is not None and drive.omega is not None:
-        raise exactly_one_error("V", "omega", both=True)
-    for name, speed, why in _BESIDE:
-        if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
-            raise ParameterError(
-                name,
-                value,
-                "left out",
-                f"{name} is given together with {speed}=: leave {name} out, as {why}",
-            )
 
 
 def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: Any) -> Any:
@@ -302,17 +266,24 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     motions: a float if ``stated`` is a number or None, else an array in the shape of ``stated``.
     Of a callable it is the value of the callable itself, not of its fit.
     """
-    if not functions.functions[name].terms.size:
+    curve = functions.functions[name]
+    if not curve.terms.size:
         raise described_error(
             name, "is empty", "a number, an array with one for each motion, or a function of t"
         )
-    start, scale = functions.speed_at_start(name)
+    # upper bounds of the magnitude over all times, (1,) or (m,)
+    sizes = []
+    for part in functions.blocks(len(curve.terms)):
+        some = curve.take(part)
+        differentiate(name, some)
+        sizes.append(np.abs(some.terms).sum(axis=-1).max(axis=1, initial=0.0))
+    start = values_at_start(curve.terms[:, 0])
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
     if stated is not None:
         given = check_array(f"{name}0", stated)
         broadcast_shape(**{f"{name}0": given, name: start})
-        differ = np.abs(given - start) > _START * scale
+        differ = np.abs(given - start) > _START * np.concatenate(sizes)
         if differ.any():
             text = (
                 f"{name}0 = {{}}: must be left out (in Python None), or {{}}, the prescribed "
@@ -365,7 +336,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     length or end, and its value at the left end of a piece is shifted to 0 where it is rounding.
     Its ``error`` is still that of the speed.
     """
-    lengths = speed.ends - speed.starts
+    lengths = ends_of(speed.starts) - speed.starts
     first = values_at_start(speed.terms)
     last = speed.terms.sum(axis=-1)
     # for each motion by itself: a slow one must not jump either
@@ -376,8 +347,13 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     if jumps.any():
         n = int(jumps.any(axis=1).argmax())
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
-        text = f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed"
-        raise dimensionless_error(name, text, "t", when, motion=n)
+        raise dimensionless_error(
+            name,
+            f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed",
+            "t",
+            when,
+            motion=n,
+        )
     terms = np.ascontiguousarray(polyder(speed.terms, axis=-1))
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
@@ -463,8 +439,14 @@ def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
     Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms); their
     value at the left end of a piece is shifted to 0 where it is rounding.
     """
-    piece = _piece_at(function.starts, starts)
-    first, last = (np.take_along_axis(t, piece, 1) for t in (function.starts, function.ends))
+    begins = function.starts
+    # Complex numbers are sorted by their real parts first: one search through the pieces of all
+    # motions in a row.
+    row = np.arange(len(begins))[:, None]
+    found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * starts, side="right")
+    # the last piece that starts by then
+    piece = found - row * begins.shape[1] - 1
+    first, last = (np.take_along_axis(t, piece, 1) for t in (begins, ends_of(begins)))
     terms = np.take_along_axis(function.terms, piece[..., None], 1)
     # a piece that is not cut keeps its terms to the bit; the one without end is constant
     cut = np.isfinite(last) & ((first != starts) | (last != ends))
@@ -484,19 +466,3 @@ def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
         part[..., 0] += whole[..., n]
     terms[cut] = part
     return _start_at_zero(terms)
-
-
-def _piece_at(begins: Floats, times: Floats) -> NDArray:
-    """Return the index of the piece that acts at each time: the last that starts by then.
-
-    begins: when pieces start, (1 or m, k), ascending, the first at 0.
-    times: times in the unit of ``begins``, >= 0, (m, n); where ``begins`` has one row, m is any
-    number.
-    Returns indices in 0 ... k - 1, int, in the shape of ``times``.  Takes memory in proportion to
-    its input, and n log k steps for each row.
-    """
-    # Complex numbers are sorted by their real parts first: one search through the pieces of all
-    # motions in a row.
-    row = np.arange(len(begins))[:, None]
-    found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * times, side="right")
-    return found - row * begins.shape[1] - 1

@@ -194,14 +194,12 @@ class _Sampled:
         self.largest = max(self.largest, largest)
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
-        piece = Piece(
-            start=start, stop=stop, terms=np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far
-        )
+        piece = Piece(start, stop, np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far)
         if largest <= zero:
             return piece, None
         # still 0 at the start and at the point _RISE after it: cut where it rises
         if so_far == 0.0 and sizes[:2].max() <= zero:
-            n = int(np.argmax(sizes > zero))
+            n = np.argmax(sizes > zero)
             return None, _bisect(t[n - 1], t[n], lambda time: abs(self.value(time)) <= zero)
         allowed = np.maximum(self.share * np.maximum(np.maximum.accumulate(sizes), so_far), least)
         # The effect of the rounding of t on the values is no error of the fit.
@@ -231,7 +229,7 @@ class _Sampled:
         doubles.  Raises as :meth:`values`.
         """
         change = np.abs(np.diff(values))
-        n = int(change.argmax())
+        n = change.argmax()
         if change[n] <= allowed or 2.0 * change[n] <= change.sum():
             return None
         ends = values[n : n + 2].tolist()
@@ -297,15 +295,19 @@ def fit_callable(
     samples = SAMPLES
     if resolve is not None:
         if resolve * MOST < end:
-            text = (
+            raise dimensionless_error(
+                "resolve",
                 "resolve = {}: must be at least {}: "
-                f"at most {MOST} samples up to t = {{}} are taken"
+                f"at most {MOST} samples up to t = {{}} are taken",
+                "t",
+                resolve,
+                end / MOST,
+                end,
             )
-            raise dimensionless_error("resolve", text, "t", resolve, end / MOST, end)
         samples = max(math.ceil(end / resolve), SAMPLES)
     # at the middle of as many equal parts of the time
     times = end * (np.arange(samples) + 0.5) / samples
-    sampled = _Sampled(name, function, low=low, share=_SHARE * rtol, times=times)
+    sampled = _Sampled(name, function, low, _SHARE * rtol, times)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
     starts = np.array([*(piece.start for piece in pieces), end])
     starts[0] = 0.0  # a jump there leaves one value before it
@@ -313,8 +315,7 @@ def fit_callable(
     terms = np.zeros((starts.size, TERMS))
     terms[:-1] = [piece.terms for piece in pieces]
     terms[-1, 0] = terms[-2].sum()
-    error = max(piece.error for piece in pieces)
-    return Piecewise(starts[None], terms[None], error, starts.size)
+    return Piecewise(starts[None], terms[None], max(piece.error for piece in pieces), starts.size)
 
 
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
@@ -344,19 +345,22 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
                 joined, _ = sampled.fit(pieces[-1].start, stop, pieces[-1].so_far)
                 if joined is not None:
                     piece = joined
-                    _ = pieces.pop()
+                    pieces.pop()
             pieces.append(piece)
             so_far = max(so_far, piece.largest)
             continue
         failed.add((start, stop))
-        short = stop - start <= _LEAST_SPACINGS * np.spacing(stop)
-        if sampled.taken - sampled.times.size > MOST or (cut is None and short):
-            text = (
+        if sampled.taken - sampled.times.size > MOST or (
+            cut is None and stop - start <= _LEAST_SPACINGS * np.spacing(stop)
+        ):
+            raise dimensionless_error(
+                sampled.name,
                 f"{sampled.name} is a function that piecewise polynomials cannot approximate near "
                 f"t = {{}} (after {sampled.taken} values of it): must be smooth except for "
-                "jumps and corners, or be given as a Schedule"
+                "jumps and corners, or be given as a Schedule",
+                "t",
+                start,
             )
-            raise dimensionless_error(sampled.name, text, "t", start)
         # at a cut the parts end and begin at neighbouring doubles, else both in the middle; the
         # left part is put last, to be fitted first, as ``so_far`` needs the order of time
         left, right = cut or (0.5 * (start + stop),) * 2
@@ -445,11 +449,6 @@ class Piecewise(NamedTuple):
     error: float = 0.0
     corners: int = 0
 
-    @property
-    def ends(self) -> Floats:
-        """When the pieces end, in the shape of ``starts``."""
-        return ends_of(self.starts)
-
     def take(self, index: Any) -> Piecewise:
         """Return the function of some of the motions; what is the same for all motions stays.
 
@@ -485,14 +484,17 @@ def piecewise(
     """
     if callable(function):
         require_time_argument(name, function)
-        return fit_callable(name, function, end=end, rtol=rtol, low=low, resolve=resolve)
+        return fit_callable(name, function, end, rtol, low, resolve)
     if isinstance(function, Schedule):
         check_array(f"values of {name}", function.values, low=low)
         return _follow_corners(*np.atleast_2d(function.times, function.values))
     values = check_array(name, function, low=low)
     if values.ndim > 1:
-        allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
-        raise shape_error(name, values.shape, allowed)
+        raise shape_error(
+            name,
+            values.shape,
+            "a number, an array with one for each motion, or a Schedule(times, values)",
+        )
     return Piecewise(np.zeros((1, 1)), values.reshape(-1, 1, 1))
 
 
@@ -504,8 +506,7 @@ def _follow_corners(times: Floats, values: Floats) -> Piecewise:
     # constant before the first corner and after the last; in a piece the mean of both ends, and x
     # times half of their difference
     values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
-    terms = np.stack([values[:, 1:] + values[:, :-1], np.diff(values)], axis=-1)
-    terms *= 0.5
+    terms = 0.5 * np.stack([values[:, 1:] + values[:, :-1], np.diff(values)], axis=-1)
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])
     # without pieces that have no length for any motion, as at a first corner at t = 0

@@ -33,7 +33,6 @@ from ..core import (
     check_names,
     check_number,
     describe_value,
-    make_dimensionless,
     shape_error,
     thread_count,
 )
@@ -42,6 +41,7 @@ from .many_motions import Batch, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
 from .motion_datasets import RollResult, ensemble_dataset
 from .motion_problem import MotionProblem, SolverOptions, make_problem
+from .summaries import LEVELS, drawn_summary, summary_of
 
 # --- The result of many motions ---
 
@@ -107,7 +107,7 @@ class Ensemble(RollResult):
     flow: Booleans
     flow_error: float
     flow_problem: str
-    labels: Labels | None = None
+    labels: Labels | None
 
     def __len__(self) -> int:
         return self.status.size
@@ -136,7 +136,7 @@ class Ensemble(RollResult):
             for code, count in sorted(Counter(self.status.tolist()).items())
         }
 
-    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> Dataset:
+    def summary(self, quantiles: Iterable[float] = LEVELS) -> Dataset:
         """Compute moments, quantiles and histograms over the motions, per output time, named as
         those of a run's store.
 
@@ -170,8 +170,6 @@ class Ensemble(RollResult):
         >>> motions.summary(quantiles=[0.5])["V_quantiles"].dims
         ('quantile', 't')
         """
-        from .summaries import summary_of
-
         values: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
         levels = check_array("quantiles", values, low=0.0, high=1.0)
         if levels.ndim != 1:
@@ -205,17 +203,13 @@ class Ensemble(RollResult):
             return report
         speeds = np.vstack([self.V0[index], self.V[index].T])
         # not before the onset of partial slip; of a motion without onset, NaN, all times count
-        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(
-            speeds
-        )
+        rolls = ~(np.append(0.0, self.t)[:, None] < self.onset_time[index]) & ~np.isnan(speeds)
         x = (
             np.full(speeds.shape, np.nan)
             if self.x is None
             else np.vstack([np.zeros(index.size), self.x[index].T])
         )
-        return self._add_steadiness(
-            report, roller, V=np.nan_to_num(speeds), rolls=rolls, x=x, ends=True
-        )
+        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
 
     def fastest(self) -> Fastest:
         """Return the motions that :meth:`validity` examines, with their highest speeds.
@@ -238,14 +232,16 @@ class Ensemble(RollResult):
         >>> motions.fastest().V
         array([1., 2.])
         """
-        speeds = {name: np.abs(self[f"{name}0"]) for name in ("V", "omega")}
-        for name, start in speeds.items():
-            if (values := self[name]) is not None:
-                speeds[name] = np.fmax(start, np.fmax.reduce(np.abs(values), axis=1))
+
+        def highest(start: Floats, values: Floats | None) -> Floats:
+            if values is None:
+                return np.abs(start)
+            return np.fmax(np.abs(start), np.fmax.reduce(np.abs(values), axis=1))
+
         index = np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64)
         # +0 from rest: friction moves the axis in the sense of the rotation
-        sense = self.V0 * self.omega0 + 0.0
-        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
+        omega = np.copysign(highest(self.omega0, self.omega), self.V0 * self.omega0 + 0.0)
+        return Fastest(index, highest(self.V0, self.V)[index], omega[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return title and rows of the printed report, a list of :class:`SummaryRow`.
@@ -256,9 +252,6 @@ class Ensemble(RollResult):
         motions from the flow map and its stated error, if any; how many motions ended in which way,
         a row each.
         """
-        ends = [
-            SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()
-        ]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
             if (values := self[name]) is not None and values.size:
@@ -277,7 +270,10 @@ class Ensemble(RollResult):
                     "by flow map", f"{self.flow.sum()} motions, stated error {self.flow_error:.2g}"
                 )
             )
-        return f"Ensemble of {len(self)} motions", rows + ends
+        rows += [
+            SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()
+        ]
+        return f"Ensemble of {len(self)} motions", rows
 
     def to_xarray(self) -> Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status,
@@ -307,7 +303,6 @@ class Ensemble(RollResult):
         angle.
         """
         from ..core.plots import draw
-        from .summaries import drawn_summary
 
         return draw(drawn_summary(self.to_xarray()))
 
@@ -435,31 +430,34 @@ def ensemble(
         Drive(force, torque, slope, brake, drag, omega, V),
         units,
     )
-    progress = check_bool("progress", progress)
     if speed is not None:
-        speed = check_number("speed", speed, unit=units, above=0.0)
-    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
-    problem = make_problem(roller, start, drive=drive, end=times[-1], options=options)
+        speed = check_number("speed", speed, unit=units, above=0.0) / units["speed"]
+    problem = make_problem(
+        roller,
+        start,
+        drive,
+        times[-1],
+        SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested),
+    )
     inputs, count = _broadcast_inputs(problem, drive.numbers)
     problem.warn_of_start(start)
     scale = problem.roller.scale
-    scene = problem.scene
-    law: Any = scene.rolling_law
+    law: Any = problem.scene.rolling_law
     # a table of another program ends at a speed; those of the package do not
     ends = law is not None and law.coupled is not None and law.coupled.fastest < FASTEST
     if ends and "V" not in names:
         names = (*names, "V")
     batch = Batch(
-        problem=problem,
-        inputs=inputs,
+        problem,
+        inputs,
         immobile=np.broadcast_to(problem.immobile, (count,)),
         times=times / scale["t"],
-        rows=names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
+        rows=tuple(name for name in names if problem.drive.given or name not in ACTING),
         threads=thread_count(threads),
-        progress="motions" if progress else None,
+        progress="motions" if check_bool("progress", progress) else None,
     )
     try:
-        found, about = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
+        found, about = solve_batch(batch, method, speed)
     except ParameterError as error:
         raise with_scales(error, scale) from error
     if ends:
@@ -467,10 +465,12 @@ def ensemble(
         for V in (np.reshape(inputs["V0"], (-1, 1)), found.out[batch.rows.index("V")]):
             refuse_beyond(law, kappa * np.abs(np.nan_to_num(V)))
     # None: not requested; 0: loads and works of free motions, which no kernel computes
-    columns: dict[str, Any] = dict.fromkeys(FIELDS) | {
-        name: np.zeros((count, times.size)) for name in names
-    }
-    columns |= _in_units(batch, found) | about
+    columns: dict[str, Any] = (
+        dict.fromkeys(FIELDS)
+        | {name: np.zeros((count, times.size)) for name in names}
+        | _in_units(batch, found)
+        | about
+    )
     result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **columns)
     warn_of_speeds(problem.roller, start[0], result.V)
     return result

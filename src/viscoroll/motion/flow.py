@@ -17,7 +17,7 @@ from __future__ import annotations
 import hashlib
 import math
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -38,6 +38,9 @@ from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integra
 
 # --- A flow map, and its file beside the compiled kernels ---
 
+#: (material, kappa, mu, j), numbers, on which a map depends; the material is alpha, or a
+#: :class:`Prony` series in its own unit of time
+MapParameters = tuple[Any, ...]
 #: maps kept; the one that was used longest ago goes first
 KEPT = 64
 
@@ -60,7 +63,7 @@ class FlowMap:
     problem : why the scene has no map, or "".
     """
 
-    parameters: tuple[Any, ...]
+    parameters: MapParameters
     first: int
     table: Floats
     errors: tuple[float, ...]
@@ -75,17 +78,6 @@ class FlowMap:
         """
         material, _, _, j = self.parameters
         return law_table(material).T_mean / (1.0 + j)
-
-    def stated_error(self, *, path: bool, loss: bool) -> float:
-        """Return the largest stated error, relative, of the speeds and, if requested, of path and
-        losses.
-
-        path, loss : whether the errors of distance and angle, and those of slip and rolling loss,
-        count.
-        Returns a float; infinite where the scene has no map.
-        """
-        speeds, way, lost = self.errors
-        return max(speeds, way if path else 0.0, lost if loss else 0.0)
 
 
 def folder() -> Path:
@@ -108,11 +100,11 @@ def _digest() -> str:
     digest = hashlib.sha256(sources_digest().encode())
     for part in ("materials", "motion"):
         for path in sorted((Path(__file__).parents[1] / part).rglob("*.py")):
-            digest.update(path.name.encode() + b"\0" + path.read_bytes())
+            digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
+def _numbers(parameters: MapParameters) -> tuple[float, ...]:
     """Return the parameters as numbers, by which a map is named and compared.
 
     parameters : (alpha or :class:`Prony` series, kappa, mu, j).
@@ -125,7 +117,7 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
     return parameters
 
 
-def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
+def path_of(parameters: MapParameters, octave: int) -> Path:
     """Return the path of the file of a flow map, which may not exist.
 
     parameters : (alpha or :class:`Prony` series, kappa, mu, j).
@@ -136,7 +128,7 @@ def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     return folder() / (hashlib.sha256(numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
-def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
+def load(path: Path, parameters: MapParameters) -> FlowMap | None:
     """Return the map in a file.
 
     The time of last change of the file is set to now if it can be: maps that were used last are
@@ -158,11 +150,11 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
         if not np.array_equal(data["parameters"], _numbers(parameters)):
             raise ValueError("it was made for other parameters")
         return FlowMap(
-            parameters=parameters,
-            first=int(data["first"]),
-            table=data["table"],
-            errors=tuple(data["errors"].tolist()),
-            problem=str(data["problem"]),
+            parameters,
+            int(data["first"]),
+            data["table"],
+            tuple(data["errors"].tolist()),
+            str(data["problem"]),
         )
 
     return load_kept(path, "the cached flow map cannot be used ({}) and is built again", read)
@@ -205,7 +197,7 @@ _BLOCK = 1 << 14
 _OCTAVE_STEP = 4
 
 
-def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
+def map_key(scene: Parameters, speed: float) -> tuple[MapParameters, int]:
     """Return by what a flow map is found: the parameters that it depends on, and the speeds that it
     covers.
 
@@ -243,7 +235,7 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
 
 
 @lru_cache(_MAPS_IN_MEMORY)
-def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
+def _map(parameters: MapParameters, octave: int, threads: int | None) -> FlowMap:
     """Return a flow map from memory, from disk, or built and written to disk; the last four stay in
     memory.
 
@@ -263,7 +255,7 @@ def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowM
     return found
 
 
-def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
+def build_map(parameters: MapParameters, octave: int, threads: int | None = None) -> FlowMap:
     """Build the flow map of a scene and measure its error; nothing is written to disk.
 
     parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony`
@@ -277,47 +269,33 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
     elastic.
     """
     new_map = FlowMap(
-        parameters=parameters,
+        parameters,
         first=octave - flow_layout.OCTAVES,  # exponent of the lowest octave
         table=np.zeros(flow_layout.SIZE),
         errors=(math.inf,) * 3,
         problem="",
     )
+    if new_map.slow_rate == 0.0:
+        return replace(new_map, problem="an elastic cylinder never slows down")
+    law = law_table(parameters[0]).record
+    problem = FlowProblem(*parameters, law, new_map.slow_rate, threads)
+    parts = flow_layout.views(new_map.table)
     try:
-        fill_tables(new_map, threads)
+        with np.errstate(all="ignore"):  # what is not finite is refused
+            _fill_full_slip(problem, parts)
+            slow = fill_manifold(problem, parts)
+            for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
+                fill_layers(
+                    problem,
+                    sign,
+                    new_map.first,
+                    slow,
+                    parts.asymptote[family],
+                    parts.layer[family],
+                )
     except NoFlowMap as reason:
         return replace(new_map, problem=str(reason))
     return replace(new_map, errors=_measure_errors(new_map, octave, threads))
-
-
-def fill_tables(new_map: FlowMap, threads: int | None) -> None:
-    """Fill the tables of a new flow map.
-
-    new_map : the :class:`.flow.FlowMap`, whose ``table`` is written.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
-    available.
-    Raises NoFlowMap with the reason why the scene has no map, a sentence; the table is then
-    incomplete.  Of an elastic scene, which never slows down, nothing is written.
-    """
-    if new_map.slow_rate == 0.0:
-        raise NoFlowMap("an elastic cylinder never slows down")
-    parts = flow_layout.views(new_map.table)
-    law = law_table(new_map.parameters[0]).record
-    problem = FlowProblem(
-        *new_map.parameters, law=law, slow_rate=new_map.slow_rate, threads=threads
-    )
-    with np.errstate(all="ignore"):  # what is not finite is refused
-        _fill_full_slip(problem, parts)
-        slow = fill_manifold(problem, parts)
-        for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
-            fill_layers(
-                problem,
-                sign,
-                first=new_map.first,
-                slow=slow,
-                asymptote=parts.asymptote[family],
-                layer=parts.layer[family],
-            )
 
 
 def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
@@ -356,7 +334,6 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
             raise NoFlowMap(STOPS)
         time = NODES.powers(T)
         path = NODES.powers(X)
-        onset = NODES.powers(slip)
         parts.slide[n] = np.hstack([interleave_pairs(time, NODES.powers(limit)), path])
         # nearly held: the inverse would end before the speeds that are served; the sum of powers is
         # T at the end of the third octave from the top, the highest one that is served
@@ -365,7 +342,7 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         # over kappa mu |T|, with the octaves of kappa V
         parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
         # over kappa |I|/(1 + j); u is kappa |V| at onset
-        u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
+        u = SPEEDS.inverse(NODES.powers(slip), SPEEDS.x * (1.0 + j) / kappa)
         V_on, T_on, X_on = (
             NODES.powers(value)
             for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))
@@ -404,8 +381,7 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
         errors[n] = _motion_errors(new_map, starts[n, :, None])
 
     run_blocks(work, _SAMPLE_SIZE, 1, threads=threads)
-    worst = np.maximum(_MARGIN * errors.max(axis=0), _FLOOR)
-    return tuple(worst.tolist())
+    return tuple(np.maximum(_MARGIN * errors.max(axis=0), _FLOOR).tolist())
 
 
 def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
@@ -446,7 +422,7 @@ def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return np.zeros(3)
-    exact, true_onset = integrate_motions(new_map.parameters, (V0, omega0), np.ones(1), times)
+    exact, true_onset = integrate_motions(new_map.parameters, start, np.ones(1), times)
     out = exact[list(_MEASURED_ROWS), 0]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
@@ -510,13 +486,9 @@ class FlowResult(NamedTuple):
         times : number of output times.
         Returns a :class:`FlowResult` of new arrays.
         """
-        return cls(
-            out=np.empty((rows, count, times)),
-            status=np.full(count, -1, np.int8),
-            onset=np.empty(count),
-            rest=np.empty(count),
-            switches=np.zeros(count, np.int64),
-        )
+        onset, rest = np.empty((2, count))
+        status = np.full(count, -1, np.int8)
+        return cls(np.empty((rows, count, times)), status, onset, rest, np.zeros(count, np.int64))
 
 
 def look_up_ensemble(
@@ -542,15 +514,12 @@ def look_up_ensemble(
     V0, omega0, times = (
         broadcast_vector(a, a.shape) for a in (motions.V0, motions.omega0, motions.t)
     )
-    count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
+    count = np.broadcast(V0, omega0).size  # one of the two may be a single value
     result = FlowResult.empty(len(motions.rows), count, times.size)
     motions = motions._replace(V0=V0, omega0=omega0, t=times, rows=np.array(motions.rows, np.int64))
-    _, kappa, mu, j = chosen.parameters
-    flow = Flow(
-        table=chosen.table, first=chosen.first, kappa=kappa, mu=mu, j=j, slow_rate=chosen.slow_rate
-    )
+    flow = Flow(chosen.table, chosen.first, *chosen.parameters[1:], chosen.slow_rate)
     run_blocks(
-        lambda start, stop: look_up_motions(flow, motions, result, start, stop),
+        partial(look_up_motions, flow, motions, result),
         count,
         _BLOCK,
         threads=threads,

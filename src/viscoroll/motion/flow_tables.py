@@ -241,10 +241,10 @@ class SlowManifold(NamedTuple):
         )
         # the logarithm falls at a constant rate, so that dt = -d(logarithm)/rate
         near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
-        direct = [
+        near_x, near_angle = (
             (_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))
-        ]
-        return np.where(near, direct[0], x), np.where(near, direct[1], angle)
+        )
+        return np.where(near, near_x, x), np.where(near, near_angle, angle)
 
 
 def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
@@ -268,18 +268,11 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     for slope, n in zip(slopes, (1, 1, 3), strict=True):
         below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
         to_go.append(NODES.powers(NODES.integrals(slope, rows.half, below) / problem.slow_rate))
+    x, angle, loss = to_go
     speeds = NODES.powers(V), NODES.powers(delta)
     slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.kappa)
-    slow = SlowManifold(
-        rows=rows,
-        speeds=speeds,
-        path=(to_go[0], to_go[1]),
-        loss=to_go[2],
-        slow_log=NODES.powers(slow_log),
-    )
-    parts.slow[: len(V)] = np.hstack(
-        [interleave_pairs(*speeds), interleave_pairs(*slow.path), slow.loss]
-    )
+    slow = SlowManifold(rows, speeds, (x, angle), loss, NODES.powers(slow_log))
+    parts.slow[: len(V)] = np.hstack([interleave_pairs(*speeds), interleave_pairs(x, angle), loss])
     parts.manifold[:] = interleave_pairs(
         slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log))
     )
@@ -313,7 +306,7 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
         between = 0.75 * V
         moment = problem.contact_states(between)[MOMENT]
         step = math.log(2.0) * (1.0 + problem.j) * between / moment
-        (V,), (delta,) = problem.integrate(V, delta, gamma=gamma, t=step, reason=FULL_SLIP_RETURNS)
+        (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
             raise NoFlowMap(OUT_OF_RANGE)
         halves.append((V, delta))
@@ -328,8 +321,10 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     for (V, delta), start, end in zip(halves, starts, [*starts[1:], -np.inf], strict=True):
         inside = np.flatnonzero((nodes <= start) & (nodes > end))
         if inside.size:
-            (states[0, inside],), (states[1, inside],) = problem.integrate(
-                V, delta, gamma=gamma, t=(start - nodes[inside]) / rate, reason=FULL_SLIP_RETURNS
+            states[:, inside] = np.concatenate(
+                problem.integrate(
+                    V, delta, gamma, (start - nodes[inside]) / rate, FULL_SLIP_RETURNS
+                )
             )
     V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
     return rows, V, delta
@@ -389,7 +384,7 @@ def fill_layers(
     k0 = _stiff_rate(problem, V0)
     split_powers = _split_powers(problem, sign, onsets)
     split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
-    V, delta, V_end = _layer_motions(problem, sign, V0=V0, k0=k0, split=split)
+    V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
     # dE/du: all E up to the split lie between the lowest u and 1; axes (octave, V, octave of u, u)
     width = np.where(
         np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT,
@@ -421,13 +416,13 @@ def fill_layers(
     # smooth difference, for which 12 are enough
     above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
-    excess = [_pad(_COARSE.powers(value)) for value in (x, angle, lost)]
+    x, angle, lost = (_pad(_COARSE.powers(value)) for value in (x, angle, lost))
     asymptote[:] = np.hstack(
         [
             interleave_pairs(slow_log_at_V + _pad(above), rates),
             _pad(split_powers),
-            interleave_pairs(*excess[:2]),
-            excess[2],
+            interleave_pairs(x, angle),
+            lost,
         ]
     )
 
@@ -493,14 +488,13 @@ def _layer_motions(
     V_on, delta_on = problem.integrate(
         V[:, -1],
         delta[:, -1],
-        gamma=1.0 / k0.ravel(),
-        t=np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
-        reason=STICK_ENDS,
+        1.0 / k0.ravel(),
+        np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
+        STICK_ENDS,
     )
     shape = (*V0.shape, _LAYER.half.size, _COARSE.t.size)
     V_whole, delta_whole = (
-        np.concatenate([a[:, :-1], b[:, :-1]], axis=1).reshape(shape)
-        for a, b in ((V, V_on), (delta, delta_on))
+        np.hstack([a[:, :-1], b[:, :-1]]).reshape(shape) for a, b in ((V, V_on), (delta, delta_on))
     )
     return V_whole, delta_whole, V_on[:, -1].reshape(V0.shape)
 

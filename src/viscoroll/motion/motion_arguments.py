@@ -23,11 +23,8 @@ from ..core import (
     Units,
     broadcast_shape,
     check_array,
-    check_integer,
-    check_number,
     digits_beside,
     extent,
-    make_dimensionless,
     shape_error,
     strip_labels,
 )
@@ -59,7 +56,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
         raise shape_error("t", times.shape, "one end time or a vector of output times")
     falls = times[1:] < times[:-1]
     if falls.any():
-        n = int(np.argmax(falls))
+        n = falls.argmax()
         pair = times[n : n + 2]
         found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at index {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
@@ -81,33 +78,12 @@ def require_single(**arguments: Any) -> None:
         except (TypeError, ValueError):
             shape = ()
         if shape:
-            sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
-            raise ParameterError(name, shape, "a single number", sentence)
-
-
-def controls(
-    rtol: float, rest: float | None, max_steps: int, scale: Scale
-) -> tuple[float, float, int]:
-    """Check the limits of an integration.
-
-    rtol: relative tolerance of the motion, dimensionless.
-    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller,
-    perhaps with a unit;
-    None: a motion does not end at rest.
-    max_steps: largest number of steps of a motion.
-    scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read; if ``rest`` is given
-    it must be one number for all motions.
-    Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps,
-    an int).
-    Raises ParameterError for rtol that is no single number in [1e-12, 1e-2], rest that is no single
-    number, not positive and finite or in a unit of another dimension, max_steps outside [1, 10^7]
-    or no whole number.
-    """
-    return (
-        check_number("rtol", rtol, **RTOL_RANGE),
-        0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"],
-        check_integer("max_steps", max_steps, 1, MOST_STEPS),
-    )
+            raise ParameterError(
+                name,
+                shape,
+                "a single number",
+                f"roll computes one motion, but {name} has shape {shape}: use ensemble",
+            )
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
@@ -130,8 +106,14 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     for name, array in (("V0", V), ("omega0", omega)):
         if array.size and max(map(abs, extent(array))) > high:
             n = int(np.abs(array).argmax())
-            text = f"{name} = {{}}: must be at most {{}} in magnitude"
-            raise dimensionless_error(name, text, name, array.flat[n], high, motion=n)
+            raise dimensionless_error(
+                name,
+                f"{name} = {{}}: must be at most {{}} in magnitude",
+                name,
+                array.flat[n],
+                high,
+                motion=n,
+            )
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer(
         (V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16
@@ -140,8 +122,14 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
         if ((larger > 0.0) & (larger < low)).any():
             larger = np.maximum(np.abs(V), np.abs(omega))
             n = int(np.where(larger > 0.0, larger, np.inf).argmin())
-            text = "max(|V0|, R |omega0|) = {}: must be 0, or at least {}"
-            raise dimensionless_error("V0, omega0", text, "V0", larger.flat[n], low, motion=n)
+            raise dimensionless_error(
+                "V0, omega0",
+                "max(|V0|, R |omega0|) = {}: must be 0, or at least {}",
+                "V0",
+                larger.flat[n],
+                low,
+                motion=n,
+            )
     return V, omega
 
 
@@ -204,8 +192,7 @@ class Drive(NamedTuple):
     force, torque, brake, omega, V : a number, an array (n,), a Schedule or a callable of t; force
     and torque also a Feedback of one of these.
     slope, drag : numbers or arrays (n,).
-    Meaning, signs and units are those of :func:`viscoroll.roll`; :meth:`over` gives the
-    dimensionless ones.
+    Meaning, signs and units are those of :func:`viscoroll.roll`.
     """
 
     force: Any = None
@@ -229,24 +216,15 @@ class Drive(NamedTuple):
         return {n: x.value if isinstance(x, Feedback) else x for n, x in self.given.items()}
 
     @property
-    def numbers(self) -> dict[str, Floats]:
-        """Return name -> array, () or (n,), of each load or speed that is given as a number or as
-        one for each motion, also in a feedback.
+    def numbers(self) -> dict[str, Any]:
+        """Return name -> each load or speed that is given as a number or as one for each motion,
+        also in a feedback, unchecked.
 
-        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the
-        drag are among them.  Schedules and callables are left out.  Raises ParameterError for what
-        is not numeric or not finite.
+        The angle of a slope and the drag are among them.  Schedules and callables are left out.
         """
         return {
-            n: check_array(n, x)
-            for n, x in self.values.items()
-            if not (callable(x) or isinstance(x, Schedule))
+            n: x for n, x in self.values.items() if not (callable(x) or isinstance(x, Schedule))
         }
-
-    @property
-    def acts(self) -> bool:
-        """Whether anything is given."""
-        return any(value is not None for value in self)
 
     def without_zeros(self) -> Drive:
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times;
@@ -256,25 +234,12 @@ class Drive(NamedTuple):
         is.
         Raises ParameterError for a load that is no number and no function of time, or not finite.
         """
-        return self._replace(
-            **{
-                name: None
-                for name, value in self.given.items()
-                if name not in ("omega", "V") and _is_zero(name, value)
-            }
-        )
-
-    def over(self, scale: Scale) -> Drive:
-        """Return the same drive made dimensionless, a new :class:`Drive`.
-
-        scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the
-        result take the time in T_ref, the unit of time of that scale.
-        Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, a
-        callable for many cylinders or one that cannot be called with a time alone, and an array
-        whose length is not the number of cylinders.
-        """
         return Drive(
-            **{name: make_dimensionless(name, value, scale) for name, value in self.given.items()}
+            **{
+                name: value
+                for name, value in self.given.items()
+                if name in ("omega", "V") or not _is_zero(name, value)
+            }
         )
 
 

@@ -28,16 +28,25 @@ from ..core import (
     NDArray,
     ParameterError,
     Scale,
-    broadcast_vector,
     check_array,
     check_bool,
+    check_integer,
     check_number,
     make_dimensionless,
     run_blocks,
 )
 from ..laws.law_table import law_table
 from .drive_functions import UNDRIVEN, DriveFunctions, KernelDrive, prepare_drive
-from .motion_arguments import LOSSES, ROWS, STATES, Drive, controls, require_single, with_scales
+from .motion_arguments import (
+    LOSSES,
+    MOST_STEPS,
+    ROWS,
+    RTOL_RANGE,
+    STATES,
+    Drive,
+    require_single,
+    with_scales,
+)
 
 #: Quantities of free motions, rows of the kernel's output.
 _FREE_ROWS = STATES + LOSSES
@@ -150,74 +159,75 @@ def make_problem(
         require_single(material=roller.material, **roller.numbers)
     # one threshold in m/s would be another dimensionless number for each motion
     if rest is not None and np.ndim(scale["V"]):
-        sentence = (
+        raise ParameterError(
+            "rest",
+            rest,
+            "None",
             f"rest = {rest!r:.60} is one threshold in m/s for all motions, but R or T_ref "
-            "(T_epsilon) differs between them: leave rest out, or give all one R and one T_ref"
+            "(T_epsilon) differs between them: leave rest out, or give all one R and one T_ref",
         )
-        raise ParameterError("rest", rest, "None", sentence)
     unsteady = _check_unsteady(unsteady, scene)
     if (last := float(end) / scale["t"]) == math.inf:
         longest = sys.float_info.max * min(scale["t"], 1.0)
         raise ParameterError("t", end, f"less than {longest:.3g}")
+    rtol = check_number("rtol", rtol, **RTOL_RANGE)
+    # 0.0: a motion does not end at rest
+    threshold = (
+        0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"]
+    )
+    max_steps = check_integer("max_steps", max_steps, 1, MOST_STEPS)
+    if resolve is not None:
+        if not any(map(callable, drive.values.values())):
+            raise ParameterError(
+                "resolve",
+                resolve,
+                "left out",
+                f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
+                "leave it out",
+            )
+        resolve = check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
     try:
-        rtol, threshold, max_steps = controls(rtol, rest, max_steps, scale)
         V0 = make_dimensionless("V0", start[0], scale)
         omega0 = make_dimensionless("omega0", start[1], scale)
-        spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
+        loads = {name: make_dimensionless(name, x, scale) for name, x in drive.given.items()}
         functions, V0, omega0 = prepare_drive(
-            drive.over(scale), V0, omega0=omega0, end=last, rtol=rtol, resolve=spacing
+            Drive(**loads), V0, omega0, last, rtol, resolve=resolve
         )
         V0, omega0, immobile = _apply_standstill(
-            V0, omega0, functions.prescribed, scene=scene, rested=rested, scale=scale
+            V0, omega0, functions.prescribed, scene, rested, scale
         )
     except ParameterError as error:
         raise with_scales(error, scale) from error
     if rest is not None and functions.acts_at_end:
-        sentence = (
+        raise ParameterError(
+            "rest",
+            rest,
+            "None",
             f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
             "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
-            "time at which a brake stops the cylinder)"
+            "time at which a brake stops the cylinder)",
         )
-        raise ParameterError("rest", rest, "None", sentence)
-    if single and functions.counts != (1, 1):
+    if single:
         many = {
             name: f.terms[:, 0, 0] for name, f in functions.functions.items() if len(f.terms) > 1
         }
-        require_single(**many, **{"a gain, V or omega of a Feedback,": functions.gains[0]})
+        require_single(
+            **many, **{"a gain, V or omega of a Feedback,": functions.gains[0].squeeze()}
+        )
     return MotionProblem(
-        roller=roller,
-        scene=scene,
-        drive=drive,
-        functions=functions,
-        V0=V0,
-        omega0=omega0,
-        immobile=immobile,
+        roller,
+        scene,
+        drive,
+        functions,
+        V0,
+        omega0,
+        immobile,
         end=last,
         # a step ends at every corner
         limits=(rtol, threshold, max_steps + functions.corners),
         unsteady=unsteady,
-        driven=unsteady or drive.acts,
+        driven=unsteady or bool(drive.given),
     )
-
-
-def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
-    """Check ``resolve``, the largest spacing of the samples of a callable, and return it in T_ref.
-
-    resolve: the argument of the caller, not None: one number, in T_ref of a scene, in s or with a
-    unit of time of a cylinder.
-    drive: :class:`Drive` of the motions, of which :attr:`Drive.values` is read.
-    scale: :class:`Scale` of the roller, which converts s to T_ref.
-    Returns a float > 0.
-    Raises ParameterError unless ``resolve`` is one finite number above 0 without a unit of another
-    dimension, and the drive has a callable.
-    """
-    if not any(map(callable, drive.values.values())):
-        sentence = (
-            f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
-            "leave it out"
-        )
-        raise ParameterError("resolve", resolve, "left out", sentence)
-    return check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
 
 
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
@@ -231,14 +241,15 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refused = scene if scene.like_bodies else scene.uncoupled
-    refuse_cover(refused, "leave unsteady=True out, as the added mass N is not computed")
-    if not scene.like_bodies:
-        sentence = (
+    if scene.cover is None and not scene.like_bodies:
+        raise ParameterError(
+            "unsteady",
+            True,
+            "False where bodies differ",
             "unsteady = True: motions with the added mass N are computed for two bodies of "
-            "one material only; leave unsteady=True out"
+            "one material only; leave unsteady=True out",
         )
-        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
+    refuse_cover(scene, "leave unsteady=True out, as the added mass N is not computed")
     return True
 
 
@@ -284,10 +295,12 @@ def _apply_standstill(
         else "the cylinder starts in full slip" * bool(np.any(np.abs(omega0 - V) > limit))
     )
     if why:
-        sentence = (
-            f"rested is given, but {why}: leave rested out, as the loss of the start is not known"
+        raise ParameterError(
+            "rested",
+            rested,
+            "left out",
+            f"rested is given, but {why}: leave rested out, as the loss of the start is not known",
         )
-        raise ParameterError("rested", rested, "left out", sentence)
     # part of V; V = 0 with omega0 = 0 was refused above, and without a limit any other omega0 slips
     lost = FreeRolling.of_scene(scene, V).start(time / scale["t"]).speed
     lost = lost / np.where(V == 0.0, 1.0, np.abs(V))
@@ -327,8 +340,8 @@ def integrate(
 
     out = np.empty((len(rows), count, times.size))
     info = np.empty((count, N_INFO_COLUMNS))
-    indices = np.array([ROWS.index(name) for name in rows], np.int64)
-    motion_loop(batch, drive, times, limits, indices, out, info, notes)
+    row_indices = np.array([ROWS.index(name) for name in rows], np.int64)
+    motion_loop(batch, drive, times, limits, row_indices, out, info, notes)
     return out, info
 
 
@@ -367,20 +380,19 @@ def integrate_single(
     out, info = integrate(
         1,
         batch,
-        drive=problem.functions.for_kernel(),
-        times=times,
-        limits=problem.limits,
-        rows=ROWS,
-        notes=notes,
+        problem.functions.for_kernel(),
+        times,
+        problem.limits,
+        ROWS,
+        notes,
     )
-    if law.coupled is not None:
-        refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
+    refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
     return out[:, 0], info[0].tolist()
 
 
 def integrate_motions(
     parameters: tuple[Any, ...],
-    starts: tuple[Floats, Floats],
+    starts: Any,
     gamma: Floats,
     t: Floats,
     *,
@@ -409,22 +421,20 @@ def integrate_motions(
     material, kappa, mu, j = parameters
     law = law_table(material)
     count = starts[0].size
-    arrays = [
-        broadcast_vector(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)
-    ]
+    arrays = np.array(np.broadcast_arrays(kappa, mu, gamma, j, *starts))
+    arrays.flags.writeable = False
     out = np.empty((len(_FREE_ROWS), count, t.size))
     onset = np.empty(count)
 
     def work(start: int, stop: int) -> None:
-        parts = (array[start:stop] if array.size > 1 else array for array in arrays)
-        batch = law.record, law.unlike, *parts
+        batch = law.record, law.unlike, *arrays[:, start:stop]
         out[:, start:stop], info = integrate(
             stop - start,
             batch,
-            drive=UNDRIVEN.for_kernel(),
-            times=t,
-            limits=_MAP_LIMITS,
-            rows=_FREE_ROWS,
+            UNDRIVEN.for_kernel(),
+            t,
+            _MAP_LIMITS,
+            _FREE_ROWS,
         )
         onset[start:stop] = info[:, 3]
 

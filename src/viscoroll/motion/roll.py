@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +14,6 @@ from ..contact_mechanics import Roller, Validity, assess_heat, scale_of, warn_of
 from ..contact_mechanics.contact import contact
 from ..contact_mechanics.validity import validity
 from ..core import (
-    UNITLESS_TYPES,
     ArrayLike,
     Dataset,
     Feedback,
@@ -89,7 +88,7 @@ class Motion(RollResult):
     """
 
     reversals: Floats
-    _problem: MotionProblem = field(repr=False)
+    _problem: MotionProblem
 
     @property
     def message(self) -> str:
@@ -190,8 +189,8 @@ class Motion(RollResult):
         V = self.V[reached]
         # a finite creepage far beyond every onset of full slip, as contact() refuses infinity
         delta = np.clip(self.delta[reached], -1e300, 1e300)
-        slowest = -SPEED_RANGE[0] * self.scale["V"]
-        V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
+        # -0: the limit from below
+        V = np.where((V == 0.0) & np.signbit(V), -SPEED_RANGE[0] * self.scale["V"], V)
         found = contact(self.roller, V, delta=delta, fields=fields, **options)
         whole = {}
         for name, values in found.as_dict().items():
@@ -235,7 +234,6 @@ class Motion(RollResult):
         outputs = self.t[self.regime >= 0]
         whole = self.at(np.union1d(self.course.t, outputs)) if outputs.size else self
         reached = whole.regime >= 0
-        t = whole.t[reached]
         V = whole.V[reached]
         omega = whole.omega[reached]
         # for each state the index of the last state up to it that moves
@@ -254,10 +252,11 @@ class Motion(RollResult):
             return report
         if self.scene.cover is None:
             rolls = whole.regime[reached] > 0
-            x = whole.x[reached]
-            report = self._add_steadiness(report, self.roller, V=V, rolls=rolls, x=x, ends=False)
+            report = self._add_steadiness(
+                report, self.roller, V, rolls, whole.x[reached], ends=False
+            )
         # each output time ends a part, whose worst state counts
-        last = np.searchsorted(t, outputs)
+        last = np.searchsorted(whole.t[reached], outputs)
         return Validity(
             *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
         )
@@ -279,8 +278,9 @@ class Motion(RollResult):
             title = f"prescribed {name}" if name in ("V", "omega") else name
             rows.append(SummaryRow(title, describe_load(given, self._unit(name))))
         if not np.isnan(self.onset_time):
-            onset = f"t = {self.onset_time:.6g}"
-            rows.append(SummaryRow("onset of partial slip", onset, self._unit("t")))
+            rows.append(
+                SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t"))
+            )
         if self.switches:
             last = self.switches[-1]
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
@@ -290,8 +290,8 @@ class Motion(RollResult):
             rows.append(SummaryRow("changes of regime", changes))
         if self.reversals.size:
             rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
-        ended = f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})"
-        return "Motion", [*rows, SummaryRow("ended", ended)]
+        steps = f"{self.steps} step{'s' * (self.steps != 1)}"
+        return "Motion", [*rows, SummaryRow("ended", f"{self.message} ({steps})")]
 
     def at(self, t: ArrayLike) -> Motion:
         """Return the same motion at other times within [0, end], by the dense output of the steps.
@@ -389,9 +389,7 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     scale = problem.roller.scale
     end = problem.end
     T = scale["t"]
-    t = np.minimum(times / T, end)
-    if t[-1] != end:
-        t = np.append(t, end)
+    t = np.append(np.minimum(times / T, end), end)
     noted = np.full((_SWITCHES_KEPT, 2), np.nan)
     out, (status, steps, _, onset_time, rest_time) = integrate_single(
         problem, t, noted, NO_NOTES[1]
@@ -559,16 +557,18 @@ def roll(
     units = scale_of(roller)
     times = output_times(t, units)
     drive = Drive(force, torque, slope, brake, drag, omega, V)
-    # plain floats, the common case, need no search for units
-    if not UNITLESS_TYPES.issuperset(map(type, (V0, omega0, *drive))):
-        (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
-    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
+    start, drive, _ = strip_units((V0, omega0), drive, units)
     problem = make_problem(
-        roller, (V0, omega0), drive=drive, end=times[-1], options=options, single=True
+        roller,
+        start,
+        drive,
+        times[-1],
+        SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested),
+        single=True,
     )
-    problem.warn_of_start((V0, omega0))
+    problem.warn_of_start(start)
     motion = integrate_motion(problem, times)
-    warn_of_speeds(problem.roller, V0, motion.V)
+    warn_of_speeds(problem.roller, start[0], motion.V)
     if not motion.success:
         text = (
             f"roll: {motion.status.message}; outputs not reached are NaN, and the message of the "

@@ -197,8 +197,8 @@ class Quantity(NamedTuple):
         k: index of the output time, ignored without ``over_time``.
         """
         if not self.fields:
-            return getattr(motions, self.column)
-        found = [getattr(motions, name)[:, k] for name in self.fields]
+            return motions[self.column]
+        found = [motions[name][:, k] for name in self.fields]
         if not self.part:
             return self.of(*found)
         scale = motions.scale
@@ -276,8 +276,7 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> Dataset:
     names = [
         name
         for name, quantity in QUANTITIES.items()
-        if not quantity.part
-        and all(getattr(motions, field) is not None for field in quantity.fields)
+        if not quantity.part and all(motions[field] is not None for field in quantity.fields)
     ]
     dataset = summary_dataset(
         summarise(motions, names, exact=True), motions.t, levels, motions.scale.si
@@ -308,11 +307,13 @@ def drawn_summary(ensemble: Dataset) -> Dataset:
         # fewer different edges: values too near each other for even bins, or NaN without values
         edges = np.unique(np.linspace(last.low, last.high, _MOST_BARS + 1))
         if edges.size == _MOST_BARS + 1:
-            counts = np.histogram(last.values, edges)[0]
             bin_ = f"{name}_bin"
-            parts = {"bin_low": edges[:-1], "bin_high": edges[1:], "histogram": counts}
             dataset = dataset.drop_dims(bin_).assign(
-                {f"{name}_{part}": (bin_, x) for part, x in parts.items()}
+                {
+                    f"{bin_}_low": (bin_, edges[:-1]),
+                    f"{bin_}_high": (bin_, edges[1:]),
+                    f"{name}_histogram": (bin_, np.histogram(last.values, edges)[0]),
+                }
             )
     return dataset.assign_attrs(motions=ensemble.sizes["motion"])
 
@@ -356,8 +357,7 @@ def merge_summaries(summaries: Iterator[Summary]) -> Summary:
         for name, histograms in total.histograms.items():
             pairs = zip(histograms, other.histograms[name], strict=True)
             total.histograms[name] = [first.merge(second) for first, second in pairs]
-        for code, count in other.statuses.items():
-            total.statuses[code] = total.statuses.get(code, 0) + count
+        total.statuses = dict(Counter(total.statuses) + Counter(other.statuses))
         total.mapped += other.mapped
     return total
 
@@ -382,15 +382,15 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
     for name, histograms in total.histograms.items():
         data |= _variables(name, histograms, levels, si)
     codes = np.array([*MotionStatus], np.int8)
-    ended = column_attributes("status") | {
-        "long_name": "number of motions with each status",
-        "units": "1",
-        "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
-    }
     data["ended"] = (
         "status",
         np.array([total.statuses.get(code, 0) for code in MotionStatus]),
-        ended,
+        column_attributes("status")
+        | {
+            "long_name": "number of motions with each status",
+            "units": "1",
+            "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
+        },
     )
     coords = {
         "t": ("t", t, column_attributes("t", si)),
@@ -427,9 +427,9 @@ def _variables(
     about = QUANTITIES[name].about(si)
     times = ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))
-    counted, mean, spread, low, high = np.array(
+    counted, mean, spread, low, high = np.transpose(
         [[one.count, one.mean, one.spread, one.low, one.high] for one in histograms]
-    ).T
+    )
     below, above = edges_of(bins)
     in_bins = f"{name}_bin"
     parts = {
@@ -440,12 +440,12 @@ def _variables(
         "max": (times, high, "largest value"),
         "quantiles": (
             ("quantile", *times),
-            np.array([one.quantiles(levels) for one in histograms]).T,
+            np.transpose([one.quantiles(levels) for one in histograms]),
             "quantiles",
         ),
         "histogram": (
             (in_bins, *times),
-            np.array([one.counts_in(bins) for one in histograms]).T,
+            np.transpose([one.counts_in(bins) for one in histograms]),
             "motions a bin",
         ),
         "bin_low": ((in_bins,), below, "lower edge of a bin"),
