@@ -382,7 +382,12 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)  # which warns of a Cylinder
     table = parse_law(dataset_content(law), path)
-    l0 = _contact_length_of_cover(table)
+    # contact length at rest in m, for which the law of a cover holds, so that the FMU refuses any
+    # other; 0.0 of half-spaces, and of a dimensionless cover, whose thickness in m is free
+    l0 = 0.0
+    if table.cover is not None and table.pair is not None:
+        cover: Any = table.material
+        l0 = float(table.pair.cover(1.0).thickness / cover.thickness)
     about = MODELS[model]
     starts = _start_values(about.variables, given, table, l0)
     if table.cover and not isinstance(given, Cylinder):
@@ -425,25 +430,6 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         for name, data in content.items():
             # ZipInfo has a fixed time, so that equal content gives equal bytes
             archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
-
-
-def _contact_length_of_cover(table: LawTable) -> float:
-    """Return the contact length at rest for which the law of a cover holds, so that the FMU can
-    refuse any other.
-
-    It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is
-    free.  The length is the thickness of the cover in m, divided by that in units of the contact
-    length at rest.
-
-    table: :class:`LawTable`, a law, with ``cover`` and ``pair`` (in SI units), each None where it
-        has none, and ``material``, which of a cover has the ``thickness`` in units of the contact
-        length at rest.
-    Returns the length in m; 0.0 if the FMU need not check it.
-    """
-    if table.cover is None or table.pair is None:
-        return 0.0
-    cover: Any = table.material
-    return float(table.pair.cover(1.0).thickness / cover.thickness)
 
 
 def _start_values(

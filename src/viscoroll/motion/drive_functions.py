@@ -132,11 +132,9 @@ class DriveFunctions:
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def blocks(self, count: int) -> list[slice]:
-        """Return slices that divide ``count`` motions into blocks, ascending, a list; for 0 motions
-        one slice.
-        """
-        step = self.block(max(count, 1))
-        return [slice(first, first + step) for first in range(0, max(count, 1), step)]
+        """Return slices that divide ``count`` motions into blocks, ascending, a list."""
+        step = self.block(count or 1)
+        return [slice(first, first + step) for first in range(0, count, step)]
 
     @cached_property
     def pieces(self) -> Floats:
@@ -308,17 +306,21 @@ def _gains(drive: Drive) -> Floats:
     Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where
     nothing is given.
     """
+    force, torque = (
+        load if isinstance(load, Feedback) else Feedback(0.0)
+        for load in (drive.force, drive.torque)
+    )
     gains = {
-        f"gain of {name} on {speed}": np.atleast_1d(
-            getattr(load, speed) if isinstance(load, Feedback) else 0.0
-        )
-        for name, load in (("force", drive.force), ("torque", drive.torque))
-        for speed in ("V", "omega")
+        "gain of force on V": force.V,
+        "gain of force on omega": force.omega,
+        "gain of torque on V": torque.V,
+        "gain of torque on omega": torque.omega,
+        "drag": check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0),
     }
-    drag = check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
-    gains["gain of torque on omega"] = gains["gain of torque on omega"] - drag
     broadcast_shape(**gains)
-    return np.array(np.broadcast_arrays(*gains.values()))
+    *rows, drag = np.broadcast_arrays(*gains.values())
+    rows[-1] = rows[-1] - drag
+    return np.reshape(rows, (4, -1))
 
 
 # --- Layout of the kernels ---
@@ -404,11 +406,11 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     its last piece before ``end``.
     """
     rows = max(len(f.starts) for f in functions)
-    own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
-    starts = np.sort(np.hstack(own), axis=1)
+    starts = np.hstack([np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions])
+    starts.sort(axis=1)
     # of equal starts, as 0 of all functions, the last is kept
     starts = starts[:, (ends_of(starts) > starts + _INSTANT).any(axis=0)]
-    kept = max(int((starts < end).any(axis=0).sum()), 1)
+    kept = max((starts < end).any(axis=0).sum(), 1)
     ends = ends_of(starts)[:, :kept]
     starts = starts[:, :kept]
     count = max(len(f.terms) for f in functions)
@@ -421,10 +423,10 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
         part = _restrict(function, starts, ends)
         coefficients[..., n * terms :][..., : part.shape[-1]] = part
     # index of the last piece of each motion that starts before the end
-    at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
-    late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
+    at_end = np.maximum((starts < end).sum(axis=1, keepdims=True) - 1, 0)
+    late = starts > np.take_along_axis(starts, at_end, axis=1)
     # the last piece before the end acts after it too
-    acting = np.take_along_axis(coefficients, at_end[:, None, None], axis=1)
+    acting = np.take_along_axis(coefficients, at_end[..., None], axis=1)
     np.copyto(coefficients, acting, where=late[..., None])
     return packed
 
@@ -459,7 +461,7 @@ def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
     shift = (starts - first) / (last - first) * 2.0 - 1.0 + scale
     whole = terms[cut]
     part = np.zeros_like(whole)
-    for n in range(whole.shape[-1] - 1, -1, -1):
+    for n in reversed(range(whole.shape[-1])):
         raised = np.zeros_like(part)
         raised[..., 1:] = part[..., :-1] * scale[..., None]
         part = part * shift[..., None] + raised

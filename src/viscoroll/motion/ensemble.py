@@ -450,11 +450,11 @@ def ensemble(
     batch = Batch(
         problem,
         inputs,
-        immobile=np.broadcast_to(problem.immobile, (count,)),
-        times=times / scale["t"],
-        rows=tuple(name for name in names if problem.drive.given or name not in ACTING),
-        threads=thread_count(threads),
-        progress="motions" if check_bool("progress", progress) else None,
+        np.broadcast_to(problem.immobile, (count,)),
+        times / scale["t"],
+        tuple(name for name in names if problem.drive.given or name not in ACTING),
+        thread_count(threads),
+        "motions" if check_bool("progress", progress) else None,
     )
     try:
         found, about = solve_batch(batch, method, speed)
@@ -492,7 +492,7 @@ def _broadcast_inputs(
     inputs = problem.scene.numbers | {"V0": problem.V0, "omega0": problem.omega0}
     arrays = {name: np.asarray(value) for name, value in inputs.items()}
     # stand-ins with as many entries as the drive has motions, for the shapes alone
-    counts = zip(("drive", "gains"), problem.functions.counts, strict=True)
+    counts = zip(("drive", "gains"), problem.functions.counts)
     own = {name: np.zeros(n) for name, n in counts if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:

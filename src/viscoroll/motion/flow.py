@@ -26,7 +26,6 @@ import numpy as np
 from ..contact_mechanics import Parameters
 from ..core import Floats, Integers, NDArray, broadcast_vector, load_kept, run_blocks, save_kept
 from ..kernels.motion import flow_layout
-from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, FlowTables
 from ..kernels.numerics.cache_folder import cache_root
 from ..kernels.numerics.jit import sources_digest
 from ..kernels.records import Flow, Motions
@@ -298,7 +297,7 @@ def build_map(parameters: MapParameters, octave: int, threads: int | None = None
     return replace(new_map, errors=_measure_errors(new_map, octave, threads))
 
 
-def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
+def _fill_full_slip(problem: FlowProblem, parts: flow_layout.FlowTables) -> None:
     """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2 in time
     gamma t.
 
@@ -316,9 +315,9 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     least = 2.0**flow_layout.LOW / kappa
     state = problem.contact_states(V)
     # |omega - V| at the onset of partial slip
-    limit = state[DELTA_STAR] * V
+    limit = state[flow_layout.DELTA_STAR] * V
     for n, sign in enumerate((1.0, -1.0)):
-        rate = mu - sign * 0.5 * state[MOMENT]
+        rate = mu - sign * 0.5 * state[flow_layout.MOMENT]
         if not np.isfinite(limit / rate).all():
             raise NoFlowMap(OUT_OF_RANGE)
         if not (rate > 0.0).all():

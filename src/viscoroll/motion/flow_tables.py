@@ -26,7 +26,6 @@ from numpy.polynomial.polynomial import polyval
 
 from ..core import Floats
 from ..kernels.motion import flow_layout
-from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, FlowTables
 from ..kernels.numerics.interpolation import (
     Interpolation,
     chebyshev,
@@ -247,7 +246,7 @@ class SlowManifold(NamedTuple):
         return np.where(near, near_x, x), np.where(near, near_angle, angle)
 
 
-def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
+def fill_manifold(problem: FlowProblem, parts: flow_layout.FlowTables) -> SlowManifold:
     """Fill the tables of the slow manifold.
 
     One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and
@@ -261,11 +260,15 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     Returns the :class:`SlowManifold`, the same functions as coefficients.
     """
     rows, V, delta = _integrate_manifold(problem)
-    slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]
+    slopes = (
+        V,
+        V * (1.0 + delta),
+        V * delta * problem.contact_states(V, delta)[flow_layout.TRACTION],
+    )
     to_go = []
     # with the slow logarithm lambda V and omega go as exp(lambda), and so do delta and Q: the slip
     # loss as exp(3 lambda).  ``below`` is the integral from -infinity to the first edge
-    for slope, n in zip(slopes, (1, 1, 3), strict=True):
+    for slope, n in zip(slopes, (1, 1, 3)):
         below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
         to_go.append(NODES.powers(NODES.integrals(slope, rows.half, below) / problem.slow_rate))
     x, angle, loss = to_go
@@ -304,7 +307,7 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     # a step is the time from V to V/2 with M/V as in the middle: (1 + j) V' = -M in time gamma t
     while problem.kappa * V[0] > _SLOW_LOG_ORIGIN:
         between = 0.75 * V
-        moment = problem.contact_states(between)[MOMENT]
+        moment = problem.contact_states(between)[flow_layout.MOMENT]
         step = math.log(2.0) * (1.0 + problem.j) * between / moment
         (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
@@ -386,15 +389,19 @@ def fill_layers(
     split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
     V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
     # dE/du: all E up to the split lie between the lowest u and 1; axes (octave, V, octave of u, u)
-    width = np.where(
+    half = _LAYER.half * np.where(
         np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT,
         split[..., None] / (1.0 - _LOWEST_U),
         1.0,
     )
-    half = width * _LAYER.half
     V_ratio = V / V0[..., None, None]
     # d(loss)/dE divided by V0^2: the power delta V Q in time gamma t, and dE = k0 d(gamma t)
-    loss = delta * V_ratio * problem.contact_states(V, delta)[TRACTION] / (V0 * k0)[..., None, None]
+    loss = (
+        delta
+        * V_ratio
+        * problem.contact_states(V, delta)[flow_layout.TRACTION]
+        / (V0 * k0)[..., None, None]
+    )
     slopes = V_ratio - 1.0, V_ratio * (1.0 + delta) - 1.0, loss
     columns = [np.log(V_ratio), delta, *(_COARSE.integrals(slope, half) for slope in slopes)]
     for column, values in enumerate(columns):
@@ -435,7 +442,7 @@ def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     V : speeds, > 0, dimensionless, of any shape.
     Returns the rates, > 0, dimensionless, in the shape of V.
     """
-    return (1.0 + 1.0 / problem.j) * problem.contact_states(V)[STIFFNESS] / V
+    return (1.0 + 1.0 / problem.j) * problem.contact_states(V)[flow_layout.STIFFNESS] / V
 
 
 def _state_before_onset(
@@ -455,12 +462,12 @@ def _state_before_onset(
     """
     state = problem.contact_states(V)
     push = sign * problem.mu
-    half_moment = 0.5 * state[MOMENT]
+    half_moment = 0.5 * state[flow_layout.MOMENT]
     tau = _LEAD * gamma
     # full slip: V' = push - M/2 and j omega' = -(push + M/2) in time gamma t, backward from onset
     before = V - tau * (push - half_moment)
     return before, (
-        V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / problem.j
+        V * (1.0 + sign * state[flow_layout.DELTA_STAR]) + tau * (push + half_moment) / problem.j
     ) / before - 1.0
 
 

@@ -129,6 +129,8 @@ class RollResult(Result):
 
 # --- Datasets ---
 
+#: Variables of a dataset: name -> (dimensions, values, attributes), as xarray takes them.
+Variables = dict[str, Any]
 #: Comment of a schedule in a dataset.
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
 
@@ -173,7 +175,7 @@ def _dataset(
     result: RollResult,
     title: str,
     dims: tuple[str, ...],
-    variables: dict[str, Any],
+    variables: Variables,
     about: dict[str, Any],
 ) -> Dataset:
     """Return the dataset of a motion or an ensemble.
@@ -223,7 +225,7 @@ def _dataset(
     )
 
 
-def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
+def _describe_drive(result: RollResult) -> tuple[Variables, dict[str, Any]]:
     """Describe the drive of a result by variables and attributes of its dataset.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion,
@@ -236,7 +238,7 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     ``drive_force_time``, in the units of the roller; name -> text of attributes that describe
     callables with their gains).  Both are empty without a drive.
     """
-    variables: dict[str, Any] = {}
+    variables: Variables = {}
     texts: dict[str, Any] = {}
     for name, given in result.drive.given.items():
         key = f"drive_{name}"
@@ -334,7 +336,7 @@ def _shared(array: NDArray, own: int = 0) -> NDArray:
     return array[0] if array.ndim > own and len(array) == 1 else array
 
 
-def _material_variables(materials: Any, count: int) -> dict[str, Any]:
+def _material_variables(materials: Any, count: int) -> Variables:
     """Return strengths and times of several materials, and share or thickness, as variables.
 
     materials: :class:`Prony`, :class:`Bodies` or :class:`Cover` of several motions; for one
@@ -355,7 +357,7 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     if not isinstance(materials, Bodies):
         return _mode_variables(materials, count, "", "")
 
-    def along(name: str, values: Any, long_name: str, **more: Any) -> dict[str, Any]:
+    def along(name: str, values: Any, long_name: str, **more: Any) -> Variables:
         """Return one variable over the motions, as a dict name -> (dimensions, values, attributes).
 
         name: name of the variable.
@@ -385,7 +387,7 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     )
 
 
-def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
+def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> Variables:
     """Return the strengths and times of the modes of one body, over (motion, mode), as variables.
 
     series: :class:`Prony`, the series of each motion, or one for all.

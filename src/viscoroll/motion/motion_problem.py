@@ -222,10 +222,10 @@ def make_problem(
         V0,
         omega0,
         immobile,
-        end=last,
+        last,
         # a step ends at every corner
-        limits=(rtol, threshold, max_steps + functions.corners),
-        unsteady=unsteady,
+        (rtol, threshold, max_steps + functions.corners),
+        unsteady,
         driven=unsteady or bool(drive.given),
     )
 
@@ -386,7 +386,8 @@ def integrate_single(
         ROWS,
         notes,
     )
-    refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
+    if law.coupled is not None:
+        refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
     return out[:, 0], info[0].tolist()
 
 
@@ -490,8 +491,8 @@ class FlowProblem(NamedTuple):
         from ..kernels.motion.flow_layout import states
 
         out = np.empty((4, V.size))
-        deltas = np.broadcast_to(delta, V.shape).ravel()
-        states(V.ravel(), deltas, self.kappa, self.mu, self.law, out)
+        delta = np.broadcast_to(delta, V.shape)
+        states(V.ravel(), delta.ravel(), self.kappa, self.mu, self.law, out)
         return out.reshape(4, *V.shape)
 
     def integrate(
@@ -518,9 +519,8 @@ class FlowProblem(NamedTuple):
             np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()
         ):
             raise NoFlowMap(OUT_OF_RANGE)
-        starts = V, V * (1.0 + delta)
         (V, _, _, _, delta, regime, *_), _ = integrate_motions(
-            self[:4], starts, gamma, t, threads=self.threads
+            self[:4], (V, V * (1.0 + delta)), gamma, t, threads=self.threads
         )
         if not ((regime == PARTIAL_SLIP) & (V > 0.0)).all():
             raise NoFlowMap(reason)

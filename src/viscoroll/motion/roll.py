@@ -134,8 +134,10 @@ class Motion(RollResult):
         # A last step that is cut at this end may take more steps than one that was not.
         limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
         for reached in times[::-1].tolist():
-            problem = self._problem._replace(end=reached, limits=limits)
-            last = integrate_motion(problem, np.array([reached * self.scale["t"]]))
+            last = integrate_motion(
+                self._problem._replace(end=reached, limits=limits),
+                np.array([reached * self.scale["t"]]),
+            )
             if np.isfinite(last.V[0]):
                 break
         return last
@@ -556,8 +558,9 @@ def roll(
     """
     units = scale_of(roller)
     times = output_times(t, units)
-    drive = Drive(force, torque, slope, brake, drag, omega, V)
-    start, drive, _ = strip_units((V0, omega0), drive, units)
+    start, drive, _ = strip_units(
+        (V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units
+    )
     problem = make_problem(
         roller,
         start,
@@ -570,9 +573,10 @@ def roll(
     motion = integrate_motion(problem, times)
     warn_of_speeds(problem.roller, start[0], motion.V)
     if not motion.success:
-        text = (
+        warnings.warn(
             f"roll: {motion.status.message}; outputs not reached are NaN, and the message of the "
-            "motion gives the last state"
+            "motion gives the last state",
+            RuntimeWarning,
+            stacklevel=2,
         )
-        warnings.warn(text, RuntimeWarning, stacklevel=2)
     return motion

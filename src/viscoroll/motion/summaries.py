@@ -24,7 +24,7 @@ import numpy as np
 
 from ..core import Dataset, Floats, Integers, MotionStatus, NDArray, ParameterError
 from .motion_arguments import ROWS
-from .motion_datasets import column_attributes, provenance
+from .motion_datasets import Variables, column_attributes, provenance
 
 # --- Counts and moments of one quantity, which merge with those of further values ---
 
@@ -95,10 +95,14 @@ class Histogram(msgspec.Struct):
         distance = other.mean - self.mean
         mean = self.mean + distance * (other.count / count)
         between = distance * distance * (self.count * (other.count / count))
-        spread = self.spread + other.spread + between
-        extremes = min(self.low, other.low), max(self.high, other.high)
         return Histogram(
-            bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes
+            bins,
+            self.counts_in(bins) + other.counts_in(bins),
+            count,
+            mean,
+            self.spread + other.spread + between,
+            min(self.low, other.low),
+            max(self.high, other.high),
         )
 
     def counts_in(self, bins: NDArray[np.int32]) -> Integers:
@@ -180,8 +184,8 @@ class Quantity(NamedTuple):
 
     fields: tuple[str, ...] = ()
     of: Callable[..., NDArray] = np.positive
-    column: str = ""
     part: str = ""
+    column: str = ""
 
     @property
     def over_time(self) -> bool:
@@ -205,7 +209,7 @@ class Quantity(NamedTuple):
         j = motions.scene.j
         # twice the kinetic energy at the start divided by m (R/T_ref)^2
         whole = (motions.V0 / scale["V"]) ** 2 + j * (motions.omega0 / scale["omega"]) ** 2
-        found = [values / scale[name] for name, values in zip(self.fields, found, strict=True)]
+        found = [values / scale[name] for name, values in zip(self.fields, found)]
         return self.of(np.where(whole > 0.0, whole, np.nan), j, *found)
 
     def about(self, si: bool) -> dict[str, Any]:
@@ -229,17 +233,15 @@ def _loss(whole: NDArray, j: Any, loss: NDArray) -> NDArray:
 QUANTITIES = {
     **{name: Quantity((name,), column=name) for name in ROWS if name != "regime"},
     "distance": Quantity(("x",), np.abs, column="x"),
-    "translation": Quantity(("V",), lambda whole, j, V: V**2 / whole, part="in translation"),
-    "rotation": Quantity(
-        ("omega",), lambda whole, j, omega: j * omega**2 / whole, part="in rotation"
-    ),
+    "translation": Quantity(("V",), lambda whole, j, V: V**2 / whole, "in translation"),
+    "rotation": Quantity(("omega",), lambda whole, j, omega: j * omega**2 / whole, "in rotation"),
     "lost": Quantity(
         ("V", "omega"),
         lambda whole, j, V, omega: 1.0 - V**2 / whole - j * omega**2 / whole,
-        part="lost to slip and rolling resistance",
+        "lost to slip and rolling resistance",
     ),
-    "lost_to_slip": Quantity(("slip_loss",), _loss, part="lost in slip"),
-    "lost_to_rolling": Quantity(("rolling_loss",), _loss, part="lost in rolling"),
+    "lost_to_slip": Quantity(("slip_loss",), _loss, "lost in slip"),
+    "lost_to_rolling": Quantity(("rolling_loss",), _loss, "lost in rolling"),
     "onset_time": Quantity(column="onset_time"),
     "rest_time": Quantity(column="rest_time"),
 }
@@ -278,10 +280,8 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> Dataset:
         for name, quantity in QUANTITIES.items()
         if not quantity.part and all(motions[field] is not None for field in quantity.fields)
     ]
-    dataset = summary_dataset(
-        summarise(motions, names, exact=True), motions.t, levels, motions.scale.si
-    )
-    return dataset.assign_attrs(
+    summary = summarise(motions, names, exact=True)
+    return summary_dataset(summary, motions.t, levels, motions.scale.si).assign_attrs(
         provenance("Summary of an ensemble of motions"), motions=len(motions)
     )
 
@@ -301,7 +301,7 @@ def drawn_summary(ensemble: Dataset) -> Dataset:
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)
-    dataset = summary_dataset(summary, ensemble["t"].values, LEVELS, si="R" in ensemble.attrs)
+    dataset = summary_dataset(summary, ensemble["t"].values, LEVELS, "R" in ensemble.attrs)
     for name in names:  # values that differ by less than a bin of the summary
         last: Any = summary.histograms[name][-1]
         # fewer different edges: values too near each other for even bins, or NaN without values
@@ -334,9 +334,9 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
     histograms = {}
     for name in names:
         quantity = QUANTITIES[name]
-        times = range(motions.t.size if quantity.over_time else 1)
         histograms[name] = [
-            Histogram.of(np.asarray(quantity.values(motions, k)), exact) for k in times
+            Histogram.of(np.asarray(quantity.values(motions, k)), exact)
+            for k in range(motions.t.size if quantity.over_time else 1)
         ]
     statuses = Counter(np.asarray(motions.status).tolist())
     return Summary(histograms, dict(sorted(statuses.items())), int(motions.flow.sum()))
@@ -378,10 +378,9 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
     """
     import xarray as xr
 
-    data: dict[str, Any] = {}
+    data: Variables = {}
     for name, histograms in total.histograms.items():
         data |= _variables(name, histograms, levels, si)
-    codes = np.array([*MotionStatus], np.int8)
     data["ended"] = (
         "status",
         np.array([total.statuses.get(code, 0) for code in MotionStatus]),
@@ -399,7 +398,11 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
             np.array(levels),
             {"long_name": "share of motions below", "units": "1"},
         ),
-        "status": ("status", codes, {"long_name": "code of MotionStatus"}),
+        "status": (
+            "status",
+            np.array([*MotionStatus], np.int8),
+            {"long_name": "code of MotionStatus"},
+        ),
     }
     failed = sum(n for code, n in total.statuses.items() if code > MotionStatus.RESTED)
     return xr.Dataset(
@@ -409,7 +412,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
 
 def _variables(
     name: str, histograms: list[Histogram], levels: tuple[float, ...], si: bool
-) -> dict[str, Any]:
+) -> Variables:
     """Return the variables of one quantity: moments, quantiles, and counts in all bins that hold a
     value at some time.
 
