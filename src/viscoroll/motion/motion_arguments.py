@@ -217,13 +217,15 @@ class Drive(NamedTuple):
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Return name -> each load or speed that is given as a number or as one for each motion,
-        also in a feedback, unchecked.
+        """Return name -> array of each load or speed that is given as a number or as one for each
+        motion, also in a feedback, unchecked.
 
         The angle of a slope and the drag are among them.  Schedules and callables are left out.
         """
         return {
-            n: x for n, x in self.values.items() if not (callable(x) or isinstance(x, Schedule))
+            n: np.asarray(x)
+            for n, x in self.values.items()
+            if not (callable(x) or isinstance(x, Schedule))
         }
 
     def without_zeros(self) -> Drive:
