@@ -61,9 +61,9 @@ def test_memory_of_a_schedule_is_proportional_to_its_corners():
     torque = vr.Schedule(times, 0.1 * np.sin(times))
     drive = Drive(torque=torque, force=vr.Schedule(times + 5e-4, 0.0 * times))
     prepare = partial(drive_functions.prepare_drive, drive, 0.1, 0.1, times[-1], 1e-8, None)
-    assert prepare().functions.pieces.size  # imports take memory too
+    assert prepare()[0].pieces.size  # imports take memory too
     tracemalloc.start()
-    pieces = prepare().functions.pieces
+    pieces = prepare()[0].pieces
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert pieces.shape[1] == 2 * times.size - 2

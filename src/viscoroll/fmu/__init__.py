@@ -143,6 +143,8 @@ _STEPS = {
 #: Relative tolerance of a tool's solver if its user gives none.  The tests pass through rest with
 #: it.
 _TOLERANCE = "1e-5"
+#: First line of both files.
+_DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
 
 def model_description(
@@ -181,24 +183,31 @@ def model_description(
             "BaseUnit",
             {base: str(power) for base, power in powers.items()},
         )
-    experiment = {"startTime": "0", "stopTime": "1", "tolerance": _TOLERANCE, "stepSize": "0.01"}
-    SubElement(root, "DefaultExperiment", experiment)
+    SubElement(
+        root,
+        "DefaultExperiment",
+        {"startTime": "0", "stopTime": "1", "tolerance": _TOLERANCE, "stepSize": "0.01"},
+    )
     variables = SubElement(root, "ModelVariables")
     # 0 is time, as in the library
     references = {variable.name: str(n) for n, variable in enumerate(model.variables, start=1)}
     if version == 3:
-        time = {"causality": "independent", "variability": "continuous", "unit": "s"}
-        SubElement(variables, "Float64", {"name": "time", "valueReference": "0"} | time)
+        SubElement(
+            variables,
+            "Float64",
+            {
+                "name": "time",
+                "valueReference": "0",
+                "causality": "independent",
+                "variability": "continuous",
+                "unit": "s",
+            },
+        )
     for variable in model.variables:
-        _add_variable(variables, version, variable=variable, references=references, starts=starts)
+        _add_variable(variables, version, variable, references, starts)
     _add_structure(SubElement(root, "ModelStructure"), version, model, references)
-    return _as_text(root)
-
-
-def _as_text(root: Element) -> str:
-    """Return an element and its children as indented XML with a declaration."""
     indent(root)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode") + "\n"
+    return _DECLARATION + tostring(root, encoding="unicode") + "\n"
 
 
 def _add_interfaces(root: Element, version: int, name: str, model: Model) -> None:
@@ -302,11 +311,14 @@ def build_description(name: str) -> str:
     name: name of the model and of its library, "Roller" or "ContactElement".
     Returns the text of the XML file, with its declaration.
     """
-    root = Element("fmiBuildDescription", fmiVersion="3.0")
-    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=name)
-    sources = SubElement(configuration, "SourceFileSet", language="C99")
-    SubElement(sources, "SourceFile", name="fmu.c")
-    return _as_text(root)
+    return f"""{_DECLARATION}<fmiBuildDescription fmiVersion="3.0">
+  <BuildConfiguration modelIdentifier="{name}">
+    <SourceFileSet language="C99">
+      <SourceFile name="fmu.c" />
+    </SourceFileSet>
+  </BuildConfiguration>
+</fmiBuildDescription>
+"""
 
 
 # --- Sources, description and compiled library of an FMU, packed into one archive ---
@@ -370,7 +382,12 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)  # which warns of a Cylinder
     table = parse_law(dataset_content(law), path)
-    l0 = _contact_length_of_cover(table)
+    # contact length at rest in m, for which the law of a cover holds, so that the FMU refuses any
+    # other; 0.0 of half-spaces, and of a dimensionless cover, whose thickness in m is free
+    l0 = 0.0
+    if table.cover is not None and table.pair is not None:
+        cover: Any = table.material
+        l0 = float(table.pair.cover(1.0).thickness / cover.thickness)
     about = MODELS[model]
     starts = _start_values(about.variables, given, table, l0)
     if table.cover and not isinstance(given, Cylinder):
@@ -399,9 +416,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
             (folder / file).write_text(text, encoding="utf-8")
         library = folder / f"{model}{fmpy.sharedLibraryExtension}"
         _compile(compiler, folder / "fmu.c", library)
-        description = model_description(
-            version, model, starts=starts, token=token, title=law.attrs["title"]
-        )
+        description = model_description(version, model, starts, token, law.attrs["title"])
         content: dict[str, str | bytes] = {"modelDescription.xml": description}
         if version == 3:
             content["sources/buildDescription.xml"] = build_description(model)
@@ -415,25 +430,6 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         for name, data in content.items():
             # ZipInfo has a fixed time, so that equal content gives equal bytes
             archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
-
-
-def _contact_length_of_cover(table: LawTable) -> float:
-    """Return the contact length at rest for which the law of a cover holds, so that the FMU can
-    refuse any other.
-
-    It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is
-    free.  The length is the thickness of the cover in m, divided by that in units of the contact
-    length at rest.
-
-    table: :class:`LawTable`, a law, with ``cover`` and ``pair`` (in SI units), each None where it
-        has none, and ``material``, which of a cover has the ``thickness`` in units of the contact
-        length at rest.
-    Returns the length in m; 0.0 if the FMU need not check it.
-    """
-    if table.cover is None or table.pair is None:
-        return 0.0
-    cover: Any = table.material
-    return float(table.pair.cover(1.0).thickness / cover.thickness)
 
 
 def _start_values(
@@ -464,8 +460,14 @@ def _start_values(
             # of l0 = 4 sqrt(2 R P/E'), where the contact has this length at rest
             values["load"] = l0**2 * table.pair.E_prime / (32.0 * starts["R"])
     if isinstance(given, Cylinder):
-        values |= {name: getattr(given, name) for name in ("R", "E_prime", "mu", "load")}
-        values |= {"mass": given.m, "inertia": given.j}
+        values |= {
+            "R": given.R,
+            "E_prime": given.E_prime,
+            "mu": given.mu,
+            "load": given.load,
+            "mass": given.m,
+            "inertia": given.j,
+        }
     for name, value in values.items():
         if np.ndim(value):
             raise shape_error(name, np.shape(value), "one number, as an FMU contains one cylinder")
@@ -480,13 +482,13 @@ def _sources(headers: Path, version: int) -> dict[str, str]:
     They are fmu.c, vr_roll.h, the headers of this version, and stubs.h.
     """
     package: Any = files("viscoroll")
-    own = [package / "fmu/fmu.c", package / "tables/c/vr_roll.h"]
+    own = package / "fmu/fmu.c", package / "tables/c/vr_roll.h"
     texts = {
         path.name: path.read_text(encoding="utf-8")
         for path in (*own, *headers.glob(f"fmi{version}*.h"))
     }
-    stubs = _stubs(texts["fmu.c"], texts[f"fmi{version}FunctionTypes.h"], version)
-    return texts | {"stubs.h": stubs}
+    texts["stubs.h"] = _stubs(texts["fmu.c"], texts[f"fmi{version}FunctionTypes.h"], version)
+    return texts
 
 
 def _model_header(model: Model, starts: dict[str, float]) -> str:
@@ -542,10 +544,9 @@ def _stubs(source: str, header: str, version: int) -> str:
             continue
         # a parameter of a definition needs a name, which one of the header of FMI 2 lacks
         parameters = " ".join(arguments.replace("Byte[]", "Byte bytes[]").split())
-        ok = f"fmi{version}OK"
-        error = f"fmi{version}Error"
-        count = re.search(r"size_t (n\w+)", parameters)
-        status = f"{count[1]} ? {error} : {ok}" if count else error
+        status = f"fmi{version}Error"
+        if count := re.search(r"size_t (n\w+)", parameters):
+            status = f"{count[1]} ? {status} : fmi{version}OK"
         body = (
             "" if kind == "void" else f" return {status if kind.endswith('Status') else 'NULL'}; "
         )

@@ -7,14 +7,14 @@ material.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder
 
 from ..core import (
     Feedback,
     Floats,
-    NDArray,
     ParameterError,
     broadcast_shape,
     check_array,
@@ -73,8 +73,8 @@ class DriveFunctions:
     Attributes
     ----------
     functions : name -> :class:`.drive_pieces.Piecewise` of what is given of "force", "torque",
-        "brake" and the prescribed speed, "omega" or "V".
-    tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
+        "brake" and the prescribed speed, "omega" or "V"; of "slope" its tangent, > 0 downhill along
+        +V, which adds to the force.
     prescribed : name of the prescribed speed, "omega", "V" or "".
     gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last
         less the drag.
@@ -82,26 +82,22 @@ class DriveFunctions:
     """
 
     functions: dict[str, Piecewise]
-    tangent: Floats
     prescribed: str
     gains: Floats
     end: float
 
     @cached_property
     def counts(self) -> tuple[int, int]:
-        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
-        all are alike.
+        """(Number of motions with functions of their own, with gains of their own); 1 if all are
+        alike.
 
         By the first :meth:`block` and :meth:`for_kernel` decide whether all motions share their
         pieces.
-        Raises ParameterError if two of the functions, or a function and the slope, have values for
-        different numbers of motions, both other than 1.  Whether the two numbers agree is not
-        checked here.
+        Raises ParameterError if two of the functions have values for different numbers of motions,
+        both other than 1.  Whether the two numbers agree is not checked here.
         """
-        counts = {name: len(f.terms) for name, f in self.functions.items()}
-        counts["slope"] = self.tangent.size
         shape = broadcast_shape(
-            **{name: np.empty(count) for name, count in counts.items() if count != 1}
+            **{name: f.terms[:, 0, 0] for name, f in self.functions.items() if len(f.terms) != 1}
         )
         return shape[0] if shape else 1, self.gains.shape[1]
 
@@ -124,7 +120,7 @@ class DriveFunctions:
         :data:`_BLOCK_BYTES`.
 
         most: largest number to return, >= 1; it is returned where all motions have the same
-        functions and slope.
+        functions.
         Returns an int in 1 ... ``most``.
         Raises ParameterError as :attr:`counts` does.
         """
@@ -135,30 +131,10 @@ class DriveFunctions:
         columns = 2 + 5 * terms
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
-    def _blocks(self, count: int) -> list[slice]:
-        """Return slices that divide ``count`` motions into blocks, ascending, a list; for 0 motions
-        one slice.
-        """
-        step = self.block(max(count, 1))
-        return [slice(first, first + step) for first in range(0, max(count, 1), step)]
-
-    def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
-        """Return the value of a prescribed speed at t = 0, and a bound of its largest magnitude.
-
-        name: name of the prescribed speed, "omega" or "V" (KeyError for one that is not
-        prescribed).
-        Raises ParameterError where it jumps.
-        Returns (values at t = 0; upper bounds of the magnitude over all times: the largest sum of
-        the magnitudes of the coefficients of a piece), dimensionless, (1,) each where the speed is
-        the same for all motions, else (m,).
-        """
-        speed = self.functions[name]
-        sizes = []
-        for part in self._blocks(len(speed.terms)):
-            curve = speed.take(part)
-            differentiate(name, curve)
-            sizes.append(np.abs(curve.terms).sum(axis=-1).max(axis=1, initial=0.0))
-        return values_at_start(speed.terms[:, 0]), np.concatenate(sizes)
+    def blocks(self, count: int) -> list[slice]:
+        """Return slices that divide ``count`` motions into blocks, ascending, a list."""
+        step = self.block(count or 1)
+        return [slice(first, first + step) for first in range(0, count, step)]
 
     @cached_property
     def pieces(self) -> Floats:
@@ -169,21 +145,19 @@ class DriveFunctions:
         length, 0 where it has no length or no end; then as many coefficients of powers of x in [-1,
         1] for each of force (with the pull of the slope), torque, derivative of the prescribed
         speed, brake, prescribed speed.  The coefficients of what is not given are 0.  Here m is the
-        number of motions that have functions, times or slopes of their own.
+        number of motions that have functions or times of their own.
         Raises ParameterError where a prescribed speed jumps.
         """
         name = self.prescribed
-        force, torque, brake, speed = (
-            self.functions.get(f, _NOTHING) for f in ("force", "torque", "brake", name)
+        force, slope, torque, brake, speed = (
+            self.functions.get(f, _NOTHING) for f in ("force", "slope", "torque", "brake", name)
         )
         # the pull of the slope, over the load P cos(slope), adds to the constant term of the force
-        tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
-        tilt[:, 0, 0] = self.tangent
-        # without a prescribed speed its name is "", and both are the function that is 0
-        rate = differentiate(name, speed) if name else speed
-        return pack_pieces(
-            (force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end
-        )
+        terms = force.terms + np.zeros_like(slope.terms)
+        terms[..., :1] += slope.terms
+        # without a prescribed speed its name is "", and its rate too is the function that is 0
+        rate = differentiate(name, speed)
+        return pack_pieces((force._replace(terms=terms), torque, rate, brake, speed), self.end)
 
     def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
         """Return the drive of some motions as the kernels take it, :data:`KernelDrive`.
@@ -198,9 +172,9 @@ class DriveFunctions:
         """
         some = self
         if self.counts[0] > 1:
-            functions = {name: f.take(index) for name, f in self.functions.items()}
-            tangent = self.tangent[index] if self.tangent.size > 1 else self.tangent
-            some = replace(self, functions=functions, tangent=tangent)
+            some = replace(
+                self, functions={name: f.take(index) for name, f in self.functions.items()}
+            )
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
         return some.pieces, np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
 
@@ -215,29 +189,17 @@ class DriveFunctions:
             return True
         # the coefficients of the last piece, without its start and scale
         return any(
-            self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self.counts[0])
+            self.for_kernel(part)[0][:, -1, 2:].any() for part in self.blocks(self.counts[0])
         )
 
 
 #: Drive of free motions: nothing acts.
-UNDRIVEN = DriveFunctions({}, np.zeros(()), prescribed="", gains=np.zeros((4, 1)), end=0.0)
-
-
-class DrivenStart(NamedTuple):
-    """The checked drive of motions with their start speeds, dimensionless.
-
-    functions : functions of time that drive the motions; of free motions :data:`UNDRIVEN`.
-    V0, omega0 : start speeds, numbers or (n,); a prescribed one has its value at t = 0.
-    """
-
-    functions: DriveFunctions
-    V0: Any
-    omega0: Any
+UNDRIVEN = DriveFunctions({}, prescribed="", gains=np.zeros((4, 1)), end=0.0)
 
 
 def prepare_drive(
     drive: Drive, V0: Any, omega0: Any, end: float, rtol: float, resolve: float | None
-) -> DrivenStart:
+) -> tuple[DriveFunctions, Any, Any]:
     """Check a drive and the start speeds, and fit its callables.
 
     drive: :class:`Drive`, dimensionless.
@@ -249,46 +211,13 @@ def prepare_drive(
     both prescribed, or a load beside the prescribed speed from which it follows; for a start that
     is missing, out of range, or not the prescribed one; for shapes of V0 and omega0 that do not
     broadcast.  Exceptions of a callable pass.
-    Returns the :class:`DrivenStart`; its ``functions`` are :data:`UNDRIVEN` where the drive is
-    empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
+    Returns (functions of time that drive the motions; V0; omega0), dimensionless, speeds as numbers
+    or (n,); a prescribed one has its value at t = 0.  The functions are :data:`UNDRIVEN` where the
+    drive is empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
-    if not drive.acts:
-        return DrivenStart(UNDRIVEN, *start_speeds(V0, omega0))
-    tangent = np.asarray(slope_tan_cos(drive.slope)[0])
-    _refuse_both(drive)
-    prescribed = "omega" if drive.omega is not None else "V" if drive.V is not None else ""
-    functions = {
-        name: piecewise(
-            name, given, end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
-        )
-        for name, given in drive.values.items()
-        if name not in ("slope", "drag")
-    }
-    checked_drive = DriveFunctions(
-        functions=functions, tangent=tangent, prescribed=prescribed, gains=_gains(drive), end=end
-    )
-    starts = {"V": V0, "omega": omega0}
-    if prescribed:
-        starts[prescribed] = _prescribed_start(
-            prescribed, starts[prescribed], checked_drive, drive.values[prescribed]
-        )
-    for name, start in starts.items():
-        if start is None:
-            raise ParameterError(
-                f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it"
-            )
-    return DrivenStart(checked_drive, *start_speeds(*starts.values()))
-
-
-def _refuse_both(drive: Drive) -> None:
-    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one
-    is given beside it.
-
-    Beside omega these loads are the torque, the brake and the drag, beside V the force.
-
-    drive: :class:`Drive`; a field is None where nothing is given.
-    Returns None where nothing is in conflict.
-    """
+    if not drive.given:
+        return UNDRIVEN, *start_speeds(V0, omega0)
+    tangent = slope_tan_cos(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
         raise exactly_one_error("V", "omega", both=True)
     for name, speed, why in _BESIDE:
@@ -299,6 +228,26 @@ def _refuse_both(drive: Drive) -> None:
                 "left out",
                 f"{name} is given together with {speed}=: leave {name} out, as {why}",
             )
+    prescribed = "omega" if drive.omega is not None else "V" if drive.V is not None else ""
+    functions = {
+        name: piecewise(
+            name, given, end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
+        )
+        for name, given in (drive.values | {"slope": tangent}).items()
+        if name != "drag"
+    }
+    checked_drive = DriveFunctions(functions, prescribed, _gains(drive), end)
+    starts = {"V": V0, "omega": omega0}
+    if prescribed:
+        starts[prescribed] = _prescribed_start(
+            prescribed, starts[prescribed], checked_drive, drive.values[prescribed]
+        )
+    for name, start in starts.items():
+        if start is None:
+            raise ParameterError(
+                f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it"
+            )
+    return checked_drive, *start_speeds(*starts.values())
 
 
 def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: Any) -> Any:
@@ -315,17 +264,24 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     motions: a float if ``stated`` is a number or None, else an array in the shape of ``stated``.
     Of a callable it is the value of the callable itself, not of its fit.
     """
-    if not functions.functions[name].terms.size:
+    curve = functions.functions[name]
+    if not curve.terms.size:
         raise described_error(
             name, "is empty", "a number, an array with one for each motion, or a function of t"
         )
-    start, scale = functions.speed_at_start(name)
+    # upper bounds of the magnitude over all times, (1,) or (m,)
+    sizes = []
+    for part in functions.blocks(len(curve.terms)):
+        some = curve.take(part)
+        differentiate(name, some)
+        sizes.append(np.abs(some.terms).sum(axis=-1).max(axis=1, initial=0.0))
+    start = values_at_start(curve.terms[:, 0])
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
     if stated is not None:
         given = check_array(f"{name}0", stated)
-        broadcast_shape(**{f"{name}0": given, name: start if start.size > 1 else np.empty(())})
-        differ = np.abs(given - start) > _START * scale
+        broadcast_shape(**{f"{name}0": given, name: start})
+        differ = np.abs(given - start) > _START * np.concatenate(sizes)
         if differ.any():
             text = (
                 f"{name}0 = {{}}: must be left out (in Python None), or {{}}, the prescribed "
@@ -350,35 +306,21 @@ def _gains(drive: Drive) -> Floats:
     Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where
     nothing is given.
     """
+    force, torque = (
+        load if isinstance(load, Feedback) else Feedback(0.0)
+        for load in (drive.force, drive.torque)
+    )
     gains = {
-        f"gain of {name} on {speed}": np.atleast_1d(
-            getattr(load, speed) if isinstance(load, Feedback) else 0.0
-        )
-        for name, load in (("force", drive.force), ("torque", drive.torque))
-        for speed in ("V", "omega")
+        "gain of force on V": force.V,
+        "gain of force on omega": force.omega,
+        "gain of torque on V": torque.V,
+        "gain of torque on omega": torque.omega,
+        "drag": check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0),
     }
-    drag = check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
-    gains["gain of torque on omega"] = gains["gain of torque on omega"] - drag
-    count = broadcast_shape(**gains)
-    return np.array([np.broadcast_to(gain, count) for gain in gains.values()])
-
-
-def refuse_rest(rest: Any, functions: DriveFunctions) -> None:
-    """Raise ParameterError where a motion is to end at rest while something drives it to the end.
-
-    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is
-    not examined but only quoted in the message, so that the caller must not call this function
-    where it is None.
-    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`.
-    Returns None where the motion may end at rest.
-    """
-    if functions.acts_at_end:
-        sentence = (
-            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
-            "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
-            "time at which a brake stops the cylinder)"
-        )
-        raise ParameterError("rest", rest, "None", sentence)
+    broadcast_shape(**gains)
+    *rows, drag = np.broadcast_arrays(*gains.values())
+    rows[-1] = rows[-1] - drag
+    return np.reshape(rows, (4, -1))
 
 
 # --- Layout of the kernels ---
@@ -396,21 +338,25 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     length or end, and its value at the left end of a piece is shifted to 0 where it is rounding.
     Its ``error`` is still that of the speed.
     """
-    lengths = speed.ends - speed.starts
+    lengths = ends_of(speed.starts) - speed.starts
     first = values_at_start(speed.terms)
     last = speed.terms.sum(axis=-1)
     # for each motion by itself: a slow one must not jump either
-    scale = np.maximum(np.abs(speed.terms).max(axis=(1, 2), initial=0.0), 1e-300)[:, None]
+    scale = np.abs(speed.terms).max(axis=(1, 2), initial=1e-300)[:, None]
     least = _ROUNDING_OF_JUMP * scale + 4.0 * speed.error
     jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # in pieces without length
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
     if jumps.any():
         n = int(jumps.any(axis=1).argmax())
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
-        text = f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed"
-        raise dimensionless_error(name, text, "t", when, motion=n)
-    terms = np.zeros_like(speed.terms)
-    terms[..., :-1] = speed.terms[..., 1:] * np.arange(1, terms.shape[-1])
+        raise dimensionless_error(
+            name,
+            f"{name} jumps at t = {{}}: must be continuous, as it is a prescribed speed",
+            "t",
+            when,
+            motion=n,
+        )
+    terms = np.ascontiguousarray(polyder(speed.terms, axis=-1))
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 
@@ -434,17 +380,16 @@ def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
     """Set the value at the left end of pieces to 0 where it is rounding, as it would move a
     cylinder at rest.
 
-    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms).
+    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms); changed in place: a
+    value that counts as rounding is subtracted from the constant coefficient.
     rounding: ratio of that value to the sum of the magnitudes of the coefficients below which it
     counts as rounding.
-    Returns new coefficients, (..., terms).  Where the value counts as rounding it is subtracted
-    from the constant coefficient; all others are the same.
+    Returns ``terms``.
     """
     first = values_at_start(terms)
     size = np.abs(terms).sum(axis=-1)
-    shifted = terms.copy()
-    shifted[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
-    return shifted
+    terms[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
+    return terms
 
 
 def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
@@ -461,11 +406,11 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
     its last piece before ``end``.
     """
     rows = max(len(f.starts) for f in functions)
-    own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
-    starts = np.sort(np.concatenate(own, axis=1), axis=1)
+    starts = np.hstack([np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions])
+    starts.sort(axis=1)
     # of equal starts, as 0 of all functions, the last is kept
     starts = starts[:, (ends_of(starts) > starts + _INSTANT).any(axis=0)]
-    kept = max(int((starts < end).any(axis=0).sum()), 1)
+    kept = max((starts < end).any(axis=0).sum(), 1)
     ends = ends_of(starts)[:, :kept]
     starts = starts[:, :kept]
     count = max(len(f.terms) for f in functions)
@@ -478,16 +423,17 @@ def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
         part = _restrict(function, starts, ends)
         coefficients[..., n * terms :][..., : part.shape[-1]] = part
     # index of the last piece of each motion that starts before the end
-    at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
-    late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
-    if late.any():  # the last piece before the end acts after it too
-        acting = np.take_along_axis(coefficients, at_end[:, None, None], axis=1)
-        coefficients[:] = np.where(late[..., None], acting, coefficients)
+    at_end = np.maximum((starts < end).sum(axis=1, keepdims=True) - 1, 0)
+    late = starts > np.take_along_axis(starts, at_end, axis=1)
+    # the last piece before the end acts after it too
+    acting = np.take_along_axis(coefficients, at_end[..., None], axis=1)
+    np.copyto(coefficients, acting, where=late[..., None])
     return packed
 
 
 def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
-    """Return the coefficients of a function over finer pieces.
+    """Return the coefficients of a function over finer pieces, by Horner's scheme with x -> shift +
+    scale x in those that are parts of its own.
 
     function: :class:`Piecewise` of one motion or of m motions.
     starts, ends: when the finer pieces start and end, (1 or m, k), in T_ref; none extends over a
@@ -495,55 +441,30 @@ def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
     Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms); their
     value at the left end of a piece is shifted to 0 where it is rounding.
     """
-    piece = _piece_at(function.starts, starts)
-    first, last = (np.take_along_axis(t, piece, 1) for t in (function.starts, function.ends))
-    terms = np.take_along_axis(function.terms, piece[..., None], 1)
-    # a piece that is not cut keeps its terms to the bit
-    same = (first == starts) & (last == ends)
-    return _start_at_zero(
-        np.where(
-            same[..., None], terms, _substitute(terms, first, last=last, starts=starts, ends=ends)
-        )
-    )
-
-
-def _piece_at(begins: Floats, times: Floats) -> NDArray:
-    """Return the index of the piece that acts at each time: the last that starts by then.
-
-    begins: when pieces start, (1 or m, k), ascending, the first at 0.
-    times: times in the unit of ``begins``, >= 0, (m, n); where ``begins`` has one row, m is any
-    number.
-    Returns indices in 0 ... k - 1, int, in the shape of ``times``.  Takes memory in proportion to
-    its input, and n log k steps for each row.
-    """
+    begins = function.starts
     # Complex numbers are sorted by their real parts first: one search through the pieces of all
     # motions in a row.
     row = np.arange(len(begins))[:, None]
-    found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * times, side="right")
-    return found - row * begins.shape[1] - 1
-
-
-def _substitute(
-    terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray
-) -> Floats:
-    """Return the coefficients of polynomials on parts of their pieces, by Horner's scheme with x ->
-    shift + scale x.
-
-    terms: coefficients of powers of x in [-1, 1], ascending, (m, k, terms).
-    first, last: start and end of each piece, (1 or m, k).
-    starts, ends: start and end of each part, (1 or m, k), in the unit of ``first``.
-    Returns the coefficients on the parts, (m, k, terms).  Of a piece without length, or without end
-    (``last`` infinite), they are those of a constant: its value at x = 0.
-    """
-    endless = np.isinf(last) | (last == first)
-    length = np.where(endless, 1.0, last - first)
-    scale = np.where(endless, 0.0, (ends - starts) / length)
+    found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * starts, side="right")
+    # the last piece that starts by then
+    piece = found - row * begins.shape[1] - 1
+    first, last = (np.take_along_axis(t, piece, 1) for t in (begins, ends_of(begins)))
+    terms = np.take_along_axis(function.terms, piece[..., None], 1)
+    # a piece that is not cut keeps its terms to the bit; the one without end is constant
+    cut = np.isfinite(last) & ((first != starts) | (last != ends))
+    cut = np.broadcast_to(cut, terms.shape[:2])
+    first, last, starts, ends = (
+        np.broadcast_to(times, cut.shape)[cut] for times in (first, last, starts, ends)
+    )
+    scale = (ends - starts) / (last - first)
     # the middle of the part in the x of the whole piece
-    shift = np.where(endless, 0.0, (starts - first) / length * 2.0 - 1.0 + scale)
-    result = np.zeros_like(terms)
-    for n in range(terms.shape[-1] - 1, -1, -1):
-        raised = np.zeros_like(result)
-        raised[..., 1:] = result[..., :-1] * scale[..., None]
-        result = result * shift[..., None] + raised
-        result[..., 0] += terms[..., n]
-    return result
+    shift = (starts - first) / (last - first) * 2.0 - 1.0 + scale
+    whole = terms[cut]
+    part = np.zeros_like(whole)
+    for n in reversed(range(whole.shape[-1])):
+        raised = np.zeros_like(part)
+        raised[..., 1:] = part[..., :-1] * scale[..., None]
+        part = part * shift[..., None] + raised
+        part[..., 0] += whole[..., n]
+    terms[cut] = part
+    return _start_at_zero(terms)

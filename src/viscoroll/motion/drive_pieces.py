@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -104,45 +105,30 @@ class Piece(NamedTuple):
         )
 
 
+@dataclass
 class _Sampled:
     """A callable with its samples, evenly spread over the whole time; dimensionless, times in
     T_ref.
 
-    name, function, low : name of the argument; the callable; the smallest value allowed.
-    times, samples : times of the samples and values there, (samples,).
-    taken : number of values taken so far.
+    Raises ParameterError for samples that are no finite numbers or below ``low``.  Exceptions of
+    the function pass.
+
+    name, function, low : name of the argument, for refusals; the callable; the smallest value
+    allowed.
     share : error allowed, divided by the largest value so far.
+    times, samples : times of the samples and values there, (samples,), at least one.
+    taken : number of values taken so far.
     largest : largest magnitude seen.
     """
 
-    def __init__(
-        self,
-        name: str,
-        function: Callable[[float], Any],
-        end: float,
-        rtol: float,
-        low: float,
-        samples: int,
-    ) -> None:
-        """Take the samples of a callable.
+    name: str
+    function: Callable[[float], Any]
+    low: float
+    share: float
+    times: Floats
+    taken: int = 0
 
-        name: name of the argument, for refusals.
-        function: takes t in T_ref, returns a number, dimensionless.
-        end: last time, >= 0, in T_ref.
-        rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the
-        largest magnitude so far.
-        low: smallest value allowed, in the unit of the values of the function.
-        samples: number of samples, >= 1, which are taken at the middle of as many equal parts of
-        the time from 0 to ``end``.
-        Raises ParameterError for values that are no finite numbers or below ``low``.  Exceptions of
-        the function pass.
-        """
-        self.name = name
-        self.function = function
-        self.low = low
-        self.taken = 0
-        self.share = _SHARE * rtol
-        self.times = end * (np.arange(samples) + 0.5) / samples
+    def __post_init__(self) -> None:
         self.samples = self.values(self.times)
         self.largest = float(np.abs(self.samples).max())
 
@@ -192,7 +178,8 @@ class _Sampled:
         # the ends exactly, as a callable may jump beside them
         t[0] = start
         t[-1] = stop
-        t = np.append(t, start + _RISE * (stop - start)) if so_far == 0.0 else t
+        if so_far == 0.0:
+            t = np.append(t, start + _RISE * (stop - start))
         values = self.values(t)
         part = slice(*np.searchsorted(self.times, [start, stop]))
         # every other point is a node of the fit; those between, and the samples, only compare
@@ -202,28 +189,26 @@ class _Sampled:
         order = np.argsort(t, kind="stable")
         t = t[order]
         values = values[order]
-        largest = float(np.abs(values).max())
+        sizes = np.abs(values)
+        largest = float(sizes.max())
         self.largest = max(self.largest, largest)
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
-        piece = Piece(
-            start=start, stop=stop, terms=np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far
-        )
+        piece = Piece(start, stop, np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far)
         if largest <= zero:
             return piece, None
         # still 0 at the start and at the point _RISE after it: cut where it rises
-        if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
-            n = int(np.argmax(np.abs(values) > zero))
+        if so_far == 0.0 and sizes[:2].max() <= zero:
+            n = np.argmax(sizes > zero)
             return None, _bisect(t[n - 1], t[n], lambda time: abs(self.value(time)) <= zero)
-        allowed = np.maximum(
-            self.share * np.maximum(np.maximum.accumulate(np.abs(values)), so_far), least
-        )
+        allowed = np.maximum(self.share * np.maximum(np.maximum.accumulate(sizes), so_far), least)
         # The effect of the rounding of t on the values is no error of the fit.
         rounding = float(np.spacing(stop))
         allowed += _TIME_ROUNDINGS * rounding / max(half, rounding) * np.ptp(values)
         # Values are fitted about the first one: terms are large and of both signs, and would
-        # magnify its rounding.
-        terms = _product(_product((nodes - nodes[0])[None], _TO_SERIES), _TO_TERMS)[0]
+        # magnify its rounding.  The bits do not depend on numpy's library of linear algebra.
+        series = np.einsum("i,ij->j", nodes - nodes[0], _TO_SERIES)
+        terms = np.einsum("i,ij->j", series, _TO_TERMS)
         terms[0] += nodes[0]
         # half is 0 where the motion has no duration: all points are then x = 0
         error = np.abs(polyval((t - middle) / (half or 1.0), terms) - values)
@@ -244,7 +229,7 @@ class _Sampled:
         doubles.  Raises as :meth:`values`.
         """
         change = np.abs(np.diff(values))
-        n = int(change.argmax())
+        n = change.argmax()
         if change[n] <= allowed or 2.0 * change[n] <= change.sum():
             return None
         ends = values[n : n + 2].tolist()
@@ -310,13 +295,19 @@ def fit_callable(
     samples = SAMPLES
     if resolve is not None:
         if resolve * MOST < end:
-            text = (
+            raise dimensionless_error(
+                "resolve",
                 "resolve = {}: must be at least {}: "
-                f"at most {MOST} samples up to t = {{}} are taken"
+                f"at most {MOST} samples up to t = {{}} are taken",
+                "t",
+                resolve,
+                end / MOST,
+                end,
             )
-            raise dimensionless_error("resolve", text, "t", resolve, end / MOST, end)
         samples = max(math.ceil(end / resolve), SAMPLES)
-    sampled = _Sampled(name, function, end=end, rtol=rtol, low=low, samples=samples)
+    # at the middle of as many equal parts of the time
+    times = end * (np.arange(samples) + 0.5) / samples
+    sampled = _Sampled(name, function, low, _SHARE * rtol, times)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
     starts = np.array([*(piece.start for piece in pieces), end])
     starts[0] = 0.0  # a jump there leaves one value before it
@@ -324,8 +315,7 @@ def fit_callable(
     terms = np.zeros((starts.size, TERMS))
     terms[:-1] = [piece.terms for piece in pieces]
     terms[-1, 0] = terms[-2].sum()
-    error = max(piece.error for piece in pieces)
-    return Piecewise(starts[None], terms[None], error, starts.size)
+    return Piecewise(starts[None], terms[None], max(piece.error for piece in pieces), starts.size)
 
 
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
@@ -355,19 +345,22 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
                 joined, _ = sampled.fit(pieces[-1].start, stop, pieces[-1].so_far)
                 if joined is not None:
                     piece = joined
-                    _ = pieces.pop()
+                    pieces.pop()
             pieces.append(piece)
             so_far = max(so_far, piece.largest)
             continue
         failed.add((start, stop))
-        short = stop - start <= _LEAST_SPACINGS * np.spacing(stop)
-        if sampled.taken - sampled.times.size > MOST or (cut is None and short):
-            text = (
+        if sampled.taken - sampled.times.size > MOST or (
+            cut is None and stop - start <= _LEAST_SPACINGS * np.spacing(stop)
+        ):
+            raise dimensionless_error(
+                sampled.name,
                 f"{sampled.name} is a function that piecewise polynomials cannot approximate near "
                 f"t = {{}} (after {sampled.taken} values of it): must be smooth except for "
-                "jumps and corners, or be given as a Schedule"
+                "jumps and corners, or be given as a Schedule",
+                "t",
+                start,
             )
-            raise dimensionless_error(sampled.name, text, "t", start)
         # at a cut the parts end and begin at neighbouring doubles, else both in the middle; the
         # left part is put last, to be fitted first, as ``so_far`` needs the order of time
         left, right = cut or (0.5 * (start + stop),) * 2
@@ -435,13 +428,6 @@ def _intersection(before: Piece, after: Piece, between: Piece) -> float:
     return _bisect(low, high, lambda t: is_above(t) != above_at_end)[1]
 
 
-def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
-    """Return the product of two matrices; its bits do not depend on numpy's library of linear
-    algebra.
-    """
-    return np.einsum("ij,jk->ik", A, B)
-
-
 # --- Numbers, schedules and fits as pieces ---
 
 
@@ -462,11 +448,6 @@ class Piecewise(NamedTuple):
     terms: Floats
     error: float = 0.0
     corners: int = 0
-
-    @property
-    def ends(self) -> Floats:
-        """When the pieces end, in the shape of ``starts``."""
-        return ends_of(self.starts)
 
     def take(self, index: Any) -> Piecewise:
         """Return the function of some of the motions; what is the same for all motions stays.
@@ -503,14 +484,17 @@ def piecewise(
     """
     if callable(function):
         require_time_argument(name, function)
-        return fit_callable(name, function, end=end, rtol=rtol, low=low, resolve=resolve)
+        return fit_callable(name, function, end, rtol, low, resolve)
     if isinstance(function, Schedule):
         check_array(f"values of {name}", function.values, low=low)
         return _follow_corners(*np.atleast_2d(function.times, function.values))
     values = check_array(name, function, low=low)
     if values.ndim > 1:
-        allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
-        raise shape_error(name, values.shape, allowed)
+        raise shape_error(
+            name,
+            values.shape,
+            "a number, an array with one for each motion, or a Schedule(times, values)",
+        )
     return Piecewise(np.zeros((1, 1)), values.reshape(-1, 1, 1))
 
 
@@ -522,16 +506,12 @@ def _follow_corners(times: Floats, values: Floats) -> Piecewise:
     # constant before the first corner and after the last; in a piece the mean of both ends, and x
     # times half of their difference
     values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
-    terms = np.stack([values[:, 1:] + values[:, :-1], np.diff(values)], axis=-1)
-    terms *= 0.5
+    terms = 0.5 * np.stack([values[:, 1:] + values[:, :-1], np.diff(values)], axis=-1)
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])
     # without pieces that have no length for any motion, as at a first corner at t = 0
     kept = (ends_of(starts) > starts).any(axis=0)
-    if not kept.all():
-        starts = starts[:, kept]
-        terms = terms[:, kept]
-    return Piecewise(starts, terms, corners=times.shape[1])
+    return Piecewise(starts[:, kept], terms[:, kept], corners=times.shape[1])
 
 
 def ends_of(starts: Floats) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
@@ -32,15 +33,15 @@ from ..core import (
     check_names,
     check_number,
     describe_value,
-    make_dimensionless,
     shape_error,
     thread_count,
 )
 from .flow import FlowResult
 from .many_motions import Batch, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
-from .motion_datasets import RollResult
+from .motion_datasets import RollResult, ensemble_dataset
 from .motion_problem import MotionProblem, SolverOptions, make_problem
+from .summaries import LEVELS, drawn_summary, summary_of
 
 # --- The result of many motions ---
 
@@ -106,7 +107,7 @@ class Ensemble(RollResult):
     flow: Booleans
     flow_error: float
     flow_problem: str
-    labels: Labels | None = None
+    labels: Labels | None
 
     def __len__(self) -> int:
         return self.status.size
@@ -130,10 +131,12 @@ class Ensemble(RollResult):
         >>> vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0).messages()
         {'reached the last output time': 2}
         """
-        codes, counts = np.unique(self.status, return_counts=True)
-        return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
+        return {
+            MotionStatus(code).message: count
+            for code, count in sorted(Counter(self.status.tolist()).items())
+        }
 
-    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> Dataset:
+    def summary(self, quantiles: Iterable[float] = LEVELS) -> Dataset:
         """Compute moments, quantiles and histograms over the motions, per output time, named as
         those of a run's store.
 
@@ -167,8 +170,6 @@ class Ensemble(RollResult):
         >>> motions.summary(quantiles=[0.5])["V_quantiles"].dims
         ('quantile', 't')
         """
-        from .summaries import summary_of
-
         values: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
         levels = check_array("quantiles", values, low=0.0, high=1.0)
         if levels.ndim != 1:
@@ -202,17 +203,13 @@ class Ensemble(RollResult):
             return report
         speeds = np.vstack([self.V0[index], self.V[index].T])
         # not before the onset of partial slip; of a motion without onset, NaN, all times count
-        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(
-            speeds
-        )
+        rolls = ~(np.append(0.0, self.t)[:, None] < self.onset_time[index]) & ~np.isnan(speeds)
         x = (
             np.full(speeds.shape, np.nan)
             if self.x is None
             else np.vstack([np.zeros(index.size), self.x[index].T])
         )
-        return self._add_steadiness(
-            report, roller, V=np.nan_to_num(speeds), rolls=rolls, x=x, ends=True
-        )
+        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
 
     def fastest(self) -> Fastest:
         """Return the motions that :meth:`validity` examines, with their highest speeds.
@@ -235,14 +232,16 @@ class Ensemble(RollResult):
         >>> motions.fastest().V
         array([1., 2.])
         """
-        speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
-        for name, start in speeds.items():
-            if (values := getattr(self, name)) is not None:
-                speeds[name] = np.fmax(start, np.fmax.reduce(np.abs(values), axis=1))
-        index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
+
+        def highest(start: Floats, values: Floats | None) -> Floats:
+            if values is None:
+                return np.abs(start)
+            return np.fmax(np.abs(start), np.fmax.reduce(np.abs(values), axis=1))
+
+        index = np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64)
         # +0 from rest: friction moves the axis in the sense of the rotation
-        sense = self.V0 * self.omega0 + 0.0
-        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
+        omega = np.copysign(highest(self.omega0, self.omega), self.V0 * self.omega0 + 0.0)
+        return Fastest(index, highest(self.V0, self.V)[index], omega[index])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return title and rows of the printed report, a list of :class:`SummaryRow`.
@@ -253,12 +252,9 @@ class Ensemble(RollResult):
         motions from the flow map and its stated error, if any; how many motions ended in which way,
         a row each.
         """
-        ends = [
-            SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()
-        ]
         rows = [self._row_of_times()]
         for name in ("V", "omega", "x"):
-            if (values := getattr(self, name)) is not None and values.size:
+            if (values := self[name]) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]
                 low, middle, high = (
                     np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
@@ -274,7 +270,10 @@ class Ensemble(RollResult):
                     "by flow map", f"{self.flow.sum()} motions, stated error {self.flow_error:.2g}"
                 )
             )
-        return f"Ensemble of {len(self)} motions", rows + ends
+        rows += [
+            SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()
+        ]
+        return f"Ensemble of {len(self)} motions", rows
 
     def to_xarray(self) -> Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status,
@@ -297,8 +296,6 @@ class Ensemble(RollResult):
         >>> motions.to_xarray()["V"].dims
         ('motion', 't')
         """
-        from .motion_datasets import ensemble_dataset
-
         return ensemble_dataset(self)
 
     def _figure(self) -> Figure:
@@ -306,7 +303,6 @@ class Ensemble(RollResult):
         angle.
         """
         from ..core.plots import draw
-        from .summaries import drawn_summary
 
         return draw(drawn_summary(self.to_xarray()))
 
@@ -431,36 +427,37 @@ def ensemble(
     check_choice("method", method, "auto", "flow", "integrate")
     start, drive, labels = strip_units(
         (V0, omega0),
-        Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V),
+        Drive(force, torque, slope, brake, drag, omega, V),
         units,
     )
-    progress = check_bool("progress", progress)
     if speed is not None:
-        speed = check_number("speed", speed, unit=units, above=0.0)
-    options = SolverOptions(
-        rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
+        speed = check_number("speed", speed, unit=units, above=0.0) / units["speed"]
+    problem = make_problem(
+        roller,
+        start,
+        drive,
+        times[-1],
+        SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested),
     )
-    problem = make_problem(roller, start, drive=drive, end=times[-1], options=options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
     problem.warn_of_start(start)
     scale = problem.roller.scale
-    scene = problem.scene
-    law: Any = scene.rolling_law
+    law: Any = problem.scene.rolling_law
     # a table of another program ends at a speed; those of the package do not
     ends = law is not None and law.coupled is not None and law.coupled.fastest < FASTEST
     if ends and "V" not in names:
         names = (*names, "V")
     batch = Batch(
-        problem=problem,
-        inputs=inputs,
-        immobile=np.broadcast_to(problem.immobile, (count,)),
-        times=times / scale["t"],
-        rows=names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
-        threads=thread_count(threads),
-        progress="motions" if progress else None,
+        problem,
+        inputs,
+        np.broadcast_to(problem.immobile, (count,)),
+        times / scale["t"],
+        tuple(name for name in names if problem.drive.given or name not in ACTING),
+        thread_count(threads),
+        "motions" if check_bool("progress", progress) else None,
     )
     try:
-        found, about = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
+        found, about = solve_batch(batch, method, speed)
     except ParameterError as error:
         raise with_scales(error, scale) from error
     if ends:
@@ -468,10 +465,12 @@ def ensemble(
         for V in (np.reshape(inputs["V0"], (-1, 1)), found.out[batch.rows.index("V")]):
             refuse_beyond(law, kappa * np.abs(np.nan_to_num(V)))
     # None: not requested; 0: loads and works of free motions, which no kernel computes
-    columns: dict[str, Any] = dict.fromkeys(FIELDS) | {
-        name: np.zeros((count, times.size)) for name in names
-    }
-    columns |= _in_units(batch, found) | about
+    columns: dict[str, Any] = (
+        dict.fromkeys(FIELDS)
+        | {name: np.zeros((count, times.size)) for name in names}
+        | _in_units(batch, found)
+        | about
+    )
     result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **columns)
     warn_of_speeds(problem.roller, start[0], result.V)
     return result
@@ -490,10 +489,10 @@ def _broadcast_inputs(
     kappa, mu, gamma, j, V0, omega0, dimensionless; n, which is 1 if all are numbers).
     Raises ParameterError where they, the functions of the drive included, do not broadcast to (n,).
     """
-    arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
-    arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
+    inputs = problem.scene.numbers | {"V0": problem.V0, "omega0": problem.omega0}
+    arrays = {name: np.asarray(value) for name, value in inputs.items()}
     # stand-ins with as many entries as the drive has motions, for the shapes alone
-    counts = zip(("drive", "gains"), problem.functions.counts, strict=True)
+    counts = zip(("drive", "gains"), problem.functions.counts)
     own = {name: np.zeros(n) for name, n in counts if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
@@ -506,8 +505,7 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
     """Convert the motions of an ensemble to the fields of :class:`Ensemble`, in the units of its
     roller.
 
-    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs, rows and the size of
-        immobile are read.
+    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs and rows are read.
     found: :class:`.flow.FlowResult`, dimensionless; of a cylinder its quantities are overwritten
         by those in SI units.
     Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are
@@ -516,7 +514,6 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
     switches, (n,); drive_error, a float, which stays dimensionless.
     """
     scale = batch.problem.roller.scale
-    shape = (batch.immobile.size,)
     rows = dict(zip(batch.rows, found.out, strict=True))
     times = {
         "onset_time": found.onset,
@@ -528,7 +525,15 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
         for name in rows:
             # a unit for each motion is a column; in place, as the rows may fill the memory
             rows[name] *= np.reshape(scale[name], (-1, 1))
-        times = {name: value * scale[name] for name, value in times.items()}
-    times = {name: np.broadcast_to(value, shape) for name, value in times.items()}
-    notes = {"status": found.status, "switches": found.switches}
-    return rows | times | notes | {"drive_error": batch.problem.functions.error}
+    return (
+        rows
+        | {
+            name: np.broadcast_to(value * scale[name], found.status.shape)
+            for name, value in times.items()
+        }
+        | {
+            "status": found.status,
+            "switches": found.switches,
+            "drive_error": batch.problem.functions.error,
+        }
+    )

@@ -17,7 +17,7 @@ from __future__ import annotations
 import hashlib
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,9 +26,9 @@ import numpy as np
 from ..contact_mechanics import Parameters
 from ..core import Floats, Integers, NDArray, broadcast_vector, load_kept, run_blocks, save_kept
 from ..kernels.motion import flow_layout
-from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, FlowTables
 from ..kernels.numerics.cache_folder import cache_root
-from ..kernels.records import Motions
+from ..kernels.numerics.jit import sources_digest
+from ..kernels.records import Flow, Motions
 from ..laws import interleave_pairs
 from ..laws.law_table import law_table
 from ..materials import Prony
@@ -37,6 +37,9 @@ from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integra
 
 # --- A flow map, and its file beside the compiled kernels ---
 
+#: (material, kappa, mu, j), numbers, on which a map depends; the material is alpha, or a
+#: :class:`Prony` series in its own unit of time
+MapParameters = tuple[Any, ...]
 #: maps kept; the one that was used longest ago goes first
 KEPT = 64
 
@@ -59,7 +62,7 @@ class FlowMap:
     problem : why the scene has no map, or "".
     """
 
-    parameters: tuple[Any, ...]
+    parameters: MapParameters
     first: int
     table: Floats
     errors: tuple[float, ...]
@@ -73,19 +76,7 @@ class FlowMap:
         moment of inertia divided by m R^2; 0 for elastic bodies.
         """
         material, _, _, j = self.parameters
-        T_mean = material.T_mean if isinstance(material, Prony) else (material - 1.0) / material
-        return T_mean / (1.0 + j)
-
-    def stated_error(self, *, path: bool, loss: bool) -> float:
-        """Return the largest stated error, relative, of the speeds and, if requested, of path and
-        losses.
-
-        path, loss : whether the errors of distance and angle, and those of slip and rolling loss,
-        count.
-        Returns a float; infinite where the scene has no map.
-        """
-        speeds, way, lost = self.errors
-        return max(speeds, way if path else 0.0, lost if loss else 0.0)
+        return law_table(material).T_mean / (1.0 + j)
 
 
 def folder() -> Path:
@@ -94,28 +85,25 @@ def folder() -> Path:
 
     It may not exist yet.
     """
-    return cache_root() / f"flow-{_digest(Path(__file__).parents[1])}"
+    return cache_root() / f"flow-{_digest()}"
 
 
-@lru_cache(maxsize=1)
-def _digest(package: Path) -> str:
+@cache
+def _digest() -> str:
     """Return a digest of all sources on which the bits of a map depend: kernels, materials and
     motions.
 
-    package: folder of the package.
     Returns a text of the first 16 hexadecimal digits of the SHA-256; it is computed once in a
     process.
     """
-    from ..kernels.numerics.jit import sources_digest
-
     digest = hashlib.sha256(sources_digest().encode())
     for part in ("materials", "motion"):
-        for path in sorted((package / part).rglob("*.py")):
-            digest.update(path.name.encode() + b"\0" + path.read_bytes())
+        for path in sorted((Path(__file__).parents[1] / part).rglob("*.py")):
+            digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
+def _numbers(parameters: MapParameters) -> tuple[float, ...]:
     """Return the parameters as numbers, by which a map is named and compared.
 
     parameters : (alpha or :class:`Prony` series, kappa, mu, j).
@@ -128,7 +116,7 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
     return parameters
 
 
-def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
+def path_of(parameters: MapParameters, octave: int) -> Path:
     """Return the path of the file of a flow map, which may not exist.
 
     parameters : (alpha or :class:`Prony` series, kappa, mu, j).
@@ -139,7 +127,7 @@ def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     return folder() / (hashlib.sha256(numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
-def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
+def load(path: Path, parameters: MapParameters) -> FlowMap | None:
     """Return the map in a file.
 
     The time of last change of the file is set to now if it can be: maps that were used last are
@@ -151,26 +139,24 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     write to it or to a folder above it, or if one belongs to another user; None with a
     RuntimeWarning if its content is damaged or of other parameters.
     """
-    damaged = "the cached flow map cannot be used ({}) and is built again"
-    return load_kept(path, damaged, lambda data: _read(data, parameters))
 
+    def read(data: Any) -> FlowMap:
+        """Return the :class:`FlowMap` in the arrays of a file.
 
-def _read(data: Any, parameters: tuple[Any, ...]) -> FlowMap:
-    """Return the :class:`FlowMap` in the arrays of a file.
+        data: arrays by name.
+        Raises ValueError for one of another scene, and KeyError for one that lacks an array.
+        """
+        if not np.array_equal(data["parameters"], _numbers(parameters)):
+            raise ValueError("it was made for other parameters")
+        return FlowMap(
+            parameters,
+            int(data["first"]),
+            data["table"],
+            tuple(data["errors"].tolist()),
+            str(data["problem"]),
+        )
 
-    data: arrays by name.
-    parameters: (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
-    Raises ValueError for one of another scene, and KeyError for one that lacks an array.
-    """
-    if not np.array_equal(data["parameters"], _numbers(parameters)):
-        raise ValueError("it was made for other parameters")
-    return FlowMap(
-        parameters=parameters,
-        first=int(data["first"]),
-        table=data["table"],
-        errors=tuple(data["errors"].tolist()),
-        problem=str(data["problem"]),
-    )
+    return load_kept(path, "the cached flow map cannot be used ({}) and is built again", read)
 
 
 def save(new_map: FlowMap, path: Path) -> None:
@@ -210,7 +196,7 @@ _BLOCK = 1 << 14
 _OCTAVE_STEP = 4
 
 
-def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
+def map_key(scene: Parameters, speed: float) -> tuple[MapParameters, int]:
     """Return by what a flow map is found: the parameters that it depends on, and the speeds that it
     covers.
 
@@ -248,7 +234,7 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
 
 
 @lru_cache(_MAPS_IN_MEMORY)
-def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
+def _map(parameters: MapParameters, octave: int, threads: int | None) -> FlowMap:
     """Return a flow map from memory, from disk, or built and written to disk; the last four stay in
     memory.
 
@@ -268,7 +254,7 @@ def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowM
     return found
 
 
-def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
+def build_map(parameters: MapParameters, octave: int, threads: int | None = None) -> FlowMap:
     """Build the flow map of a scene and measure its error; nothing is written to disk.
 
     parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony`
@@ -282,49 +268,36 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
     elastic.
     """
     new_map = FlowMap(
-        parameters=parameters,
+        parameters,
         first=octave - flow_layout.OCTAVES,  # exponent of the lowest octave
         table=np.zeros(flow_layout.SIZE),
         errors=(math.inf,) * 3,
         problem="",
     )
+    if new_map.slow_rate == 0.0:
+        return replace(new_map, problem="an elastic cylinder never slows down")
+    law = law_table(parameters[0]).record
+    problem = FlowProblem(*parameters, law, new_map.slow_rate, threads)
+    parts = flow_layout.views(new_map.table)
     try:
-        fill_tables(new_map, threads)
+        with np.errstate(all="ignore"):  # what is not finite is refused
+            _fill_full_slip(problem, parts)
+            slow = fill_manifold(problem, parts)
+            for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
+                fill_layers(
+                    problem,
+                    sign,
+                    new_map.first,
+                    slow,
+                    parts.asymptote[family],
+                    parts.layer[family],
+                )
     except NoFlowMap as reason:
         return replace(new_map, problem=str(reason))
     return replace(new_map, errors=_measure_errors(new_map, octave, threads))
 
 
-def fill_tables(new_map: FlowMap, threads: int | None) -> None:
-    """Fill the tables of a new flow map.
-
-    new_map : the :class:`.flow.FlowMap`, whose ``table`` is written.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
-    available.
-    Raises NoFlowMap with the reason why the scene has no map, a sentence; the table is then
-    incomplete.  Of an elastic scene, which never slows down, nothing is written.
-    """
-    if new_map.slow_rate == 0.0:
-        raise NoFlowMap("an elastic cylinder never slows down")
-    parts = flow_layout.views(new_map.table)
-    problem = FlowProblem(
-        new_map.parameters, law_table(new_map.parameters[0]).record, new_map.slow_rate, threads
-    )
-    with np.errstate(all="ignore"):  # what is not finite is refused
-        _fill_full_slip(problem, parts)
-        slow = fill_manifold(problem, parts)
-        for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
-            fill_layers(
-                problem,
-                sign,
-                first=new_map.first,
-                slow=slow,
-                asymptote=parts.asymptote[family],
-                layer=parts.layer[family],
-            )
-
-
-def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
+def _fill_full_slip(problem: FlowProblem, parts: flow_layout.FlowTables) -> None:
     """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2 in time
     gamma t.
 
@@ -336,15 +309,15 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
     onset of partial slip is no unique function of the quantity that is constant while sliding; for
     OUT_OF_RANGE where numbers leave the range of doubles.
     """
-    _, kappa, mu, j = problem.parameters
+    _, kappa, mu, j, *_ = problem
     V = SPEEDS.x / kappa
     # below the lowest speed V' is +-mu: T and X from rest to there are V/mu and V^2/(2 mu)
     least = 2.0**flow_layout.LOW / kappa
     state = problem.contact_states(V)
     # |omega - V| at the onset of partial slip
-    limit = state[DELTA_STAR] * V
+    limit = state[flow_layout.DELTA_STAR] * V
     for n, sign in enumerate((1.0, -1.0)):
-        rate = mu - sign * 0.5 * state[MOMENT]
+        rate = mu - sign * 0.5 * state[flow_layout.MOMENT]
         if not np.isfinite(limit / rate).all():
             raise NoFlowMap(OUT_OF_RANGE)
         if not (rate > 0.0).all():
@@ -360,10 +333,7 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
             raise NoFlowMap(STOPS)
         time = NODES.powers(T)
         path = NODES.powers(X)
-        onset = NODES.powers(slip)
-        parts.slide[n] = np.concatenate(
-            [interleave_pairs(time, NODES.powers(limit)), path], axis=-1
-        )
+        parts.slide[n] = np.hstack([interleave_pairs(time, NODES.powers(limit)), path])
         # nearly held: the inverse would end before the speeds that are served; the sum of powers is
         # T at the end of the third octave from the top, the highest one that is served
         if not kappa * mu * time[-3].sum() < 2.0 ** (flow_layout.HIGH - 1):
@@ -371,12 +341,12 @@ def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
         # over kappa mu |T|, with the octaves of kappa V
         parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
         # over kappa |I|/(1 + j); u is kappa |V| at onset
-        u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
-        values = [
+        u = SPEEDS.inverse(NODES.powers(slip), SPEEDS.x * (1.0 + j) / kappa)
+        V_on, T_on, X_on = (
             NODES.powers(value)
             for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))
-        ]
-        parts.onset[n] = np.concatenate([interleave_pairs(*values[:2]), values[2]], axis=-1)
+        )
+        parts.onset[n] = np.hstack([interleave_pairs(V_on, T_on), X_on])
 
 
 def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
@@ -406,16 +376,14 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
     near[:, 1] = near[:, 0] * (1.0 + mu / kappa * rng.uniform(-0.5, 0.5, near.shape[0]))
     errors = np.zeros((_SAMPLE_SIZE, 3))
 
-    def work(start: int, stop: int) -> None:
-        for n in range(start, stop):
-            errors[n] = _motion_errors(new_map, *starts[n])
+    def work(n: int, stop: int) -> None:
+        errors[n] = _motion_errors(new_map, starts[n, :, None])
 
     run_blocks(work, _SAMPLE_SIZE, 1, threads=threads)
-    worst = np.maximum(_MARGIN * errors.max(axis=0), _FLOOR)
-    return tuple(worst.tolist())
+    return tuple(np.maximum(_MARGIN * errors.max(axis=0), _FLOOR).tolist())
 
 
-def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> Floats:
+def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
     """Return the largest relative errors of one motion of a new map, against the integrator, at
     times from its onset on.
 
@@ -423,16 +391,15 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> Floats:
     onset, and the last ones at four times the time in which V falls by e at low speeds.
 
     new_map : the :class:`FlowMap`, with all tables.
-    V0, omega0 : start speeds, not both 0, dimensionless.
+    start : V0 and omega0, not both 0, dimensionless, (2, 1).
     Returns (error of V and omega divided by the larger of the two, or error of the onset time
     divided by that time and the relaxation time there, if larger; error of distance and angle,
     divided by the larger so far and 1e-5 of that at rest; error of both losses, divided by the
     energy at the start), (3,).  An error that is not finite is infinite; all are 0 for a motion
     outside the map.
     """
-    _, _, _, j = new_map.parameters
+    V0, omega0 = start
     decay = 1.0 / new_map.slow_rate
-    start = (np.array([V0]), np.array([omega0]))
 
     def flow(times: NDArray) -> FlowResult:
         """Look the motion up in the new map with gamma = 1.
@@ -447,31 +414,29 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> Floats:
     at_rest = flow(np.array([0.0, 800.0 * decay]))
     # NaN, of a motion that starts in partial slip, becomes 0
     onset = float(np.fmax(at_rest.onset[0], 0.0))
-    stiff_time = _stiff_time(new_map, max(abs(V0), abs(omega0)))
+    stiff_time = _stiff_time(new_map, np.abs(start).max())
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
     late = np.linspace(0.1, 4.0, 6) * decay
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return np.zeros(3)
-    exact, how = integrate_motions(new_map.parameters, start, np.ones(1), times)
+    exact, true_onset = integrate_motions(new_map.parameters, start, np.ones(1), times)
     out = exact[list(_MEASURED_ROWS), 0]
-    # columns of integrate(): status, steps, changes of regime, onset time, rest time
-    true_onset = how[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
     path = (
         np.maximum.accumulate(np.abs(out[2:4]).max(axis=0))
         + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
     )
-    energy = 0.5 * (V0 * V0 + j * omega0 * omega0)
+    energy = 0.5 * (V0 * V0 + new_map.parameters[3] * omega0 * omega0).item()
     errors = [
         (difference[:2] / speed).max(),
         (difference[2:4] / path).max(),
         difference[4:].max() / energy,
     ]
     if onset > 0.0:
-        errors[0] = max(errors[0], abs(onset - true_onset) / (onset + stiff_time))
+        errors[0] = max(errors[0], abs(onset - true_onset.item()) / (onset + stiff_time))
     return np.where(np.isfinite(errors), errors, math.inf)
 
 
@@ -520,13 +485,9 @@ class FlowResult(NamedTuple):
         times : number of output times.
         Returns a :class:`FlowResult` of new arrays.
         """
-        return cls(
-            out=np.empty((rows, count, times)),
-            status=np.full(count, -1, np.int8),
-            onset=np.empty(count),
-            rest=np.empty(count),
-            switches=np.zeros(count, np.int64),
-        )
+        onset, rest = np.empty((2, count))
+        status = np.full(count, -1, np.int8)
+        return cls(np.empty((rows, count, times)), status, onset, rest, np.zeros(count, np.int64))
 
 
 def look_up_ensemble(
@@ -547,21 +508,17 @@ def look_up_ensemble(
     and their other entries are undefined.
     """
     from ..kernels.motion.flow_loop import look_up_motions
-    from ..kernels.records import Flow
 
     # in their own lengths, but contiguous and read-only, as kernels are compiled for
     V0, omega0, times = (
         broadcast_vector(a, a.shape) for a in (motions.V0, motions.omega0, motions.t)
     )
-    count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
+    count = np.broadcast(V0, omega0).size  # one of the two may be a single value
     result = FlowResult.empty(len(motions.rows), count, times.size)
     motions = motions._replace(V0=V0, omega0=omega0, t=times, rows=np.array(motions.rows, np.int64))
-    _, kappa, mu, j = chosen.parameters
-    flow = Flow(
-        table=chosen.table, first=chosen.first, kappa=kappa, mu=mu, j=j, slow_rate=chosen.slow_rate
-    )
+    flow = Flow(chosen.table, chosen.first, *chosen.parameters[1:], chosen.slow_rate)
     run_blocks(
-        lambda start, stop: look_up_motions(flow, motions, result, start, stop),
+        partial(look_up_motions, flow, motions, result),
         count,
         _BLOCK,
         threads=threads,

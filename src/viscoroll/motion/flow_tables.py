@@ -26,7 +26,6 @@ from numpy.polynomial.polynomial import polyval
 
 from ..core import Floats
 from ..kernels.motion import flow_layout
-from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, FlowTables
 from ..kernels.numerics.interpolation import (
     Interpolation,
     chebyshev,
@@ -241,13 +240,13 @@ class SlowManifold(NamedTuple):
         )
         # the logarithm falls at a constant rate, so that dt = -d(logarithm)/rate
         near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
-        direct = [
+        near_x, near_angle = (
             (_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))
-        ]
-        return np.where(near, direct[0], x), np.where(near, direct[1], angle)
+        )
+        return np.where(near, near_x, x), np.where(near, near_angle, angle)
 
 
-def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
+def fill_manifold(problem: FlowProblem, parts: flow_layout.FlowTables) -> SlowManifold:
     """Fill the tables of the slow manifold.
 
     One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and
@@ -261,25 +260,22 @@ def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
     Returns the :class:`SlowManifold`, the same functions as coefficients.
     """
     rows, V, delta = _integrate_manifold(problem)
-    slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]
+    slopes = (
+        V,
+        V * (1.0 + delta),
+        V * delta * problem.contact_states(V, delta)[flow_layout.TRACTION],
+    )
     to_go = []
     # with the slow logarithm lambda V and omega go as exp(lambda), and so do delta and Q: the slip
     # loss as exp(3 lambda).  ``below`` is the integral from -infinity to the first edge
-    for slope, n in zip(slopes, (1, 1, 3), strict=True):
+    for slope, n in zip(slopes, (1, 1, 3)):
         below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
         to_go.append(NODES.powers(NODES.integrals(slope, rows.half, below) / problem.slow_rate))
+    x, angle, loss = to_go
     speeds = NODES.powers(V), NODES.powers(delta)
-    slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.parameters[1])
-    slow = SlowManifold(
-        rows=rows,
-        speeds=speeds,
-        path=(to_go[0], to_go[1]),
-        loss=to_go[2],
-        slow_log=NODES.powers(slow_log),
-    )
-    parts.slow[: len(V)] = np.concatenate(
-        [interleave_pairs(*speeds), interleave_pairs(*slow.path), slow.loss], axis=-1
-    )
+    slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.kappa)
+    slow = SlowManifold(rows, speeds, (x, angle), loss, NODES.powers(slow_log))
+    parts.slow[: len(V)] = np.hstack([interleave_pairs(*speeds), interleave_pairs(x, angle), loss])
     parts.manifold[:] = interleave_pairs(
         slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log))
     )
@@ -302,19 +298,18 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     its value at the first of these states; V; delta at their nodes, (rows, nodes) each,
     dimensionless).
     """
-    kappa = problem.parameters[1]
-    j = problem.parameters[3]
     rate = problem.slow_rate
-    V = np.array([2.0 ** (flow_layout.HIGH + _RUN_IN_OCTAVES) / kappa])
+    V = np.array([2.0 ** (flow_layout.HIGH + _RUN_IN_OCTAVES) / problem.kappa])
     delta = np.zeros(1)
     gamma = np.ones(1)
     halves = []
     steps = []
     # a step is the time from V to V/2 with M/V as in the middle: (1 + j) V' = -M in time gamma t
-    while kappa * V[0] > _SLOW_LOG_ORIGIN:
+    while problem.kappa * V[0] > _SLOW_LOG_ORIGIN:
         between = 0.75 * V
-        step = math.log(2.0) * (1.0 + j) * between / problem.contact_states(between)[MOMENT]
-        (V,), (delta,) = problem.integrate(V, delta, gamma=gamma, t=step, reason=FULL_SLIP_RETURNS)
+        moment = problem.contact_states(between)[flow_layout.MOMENT]
+        step = math.log(2.0) * (1.0 + problem.j) * between / moment
+        (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
             raise NoFlowMap(OUT_OF_RANGE)
         halves.append((V, delta))
@@ -329,8 +324,10 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     for (V, delta), start, end in zip(halves, starts, [*starts[1:], -np.inf], strict=True):
         inside = np.flatnonzero((nodes <= start) & (nodes > end))
         if inside.size:
-            (states[0, inside],), (states[1, inside],) = problem.integrate(
-                V, delta, gamma=gamma, t=(start - nodes[inside]) / rate, reason=FULL_SLIP_RETURNS
+            states[:, inside] = np.concatenate(
+                problem.integrate(
+                    V, delta, gamma, (start - nodes[inside]) / rate, FULL_SLIP_RETURNS
+                )
             )
     V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
     return rows, V, delta
@@ -384,23 +381,27 @@ def fill_layers(
     where a motion of the layer leaves partial slip, and for OUT_OF_RANGE where its start is not
     finite or k0 not positive.
     """
-    kappa = problem.parameters[1]
+    kappa = problem.kappa
     onsets = octaves(first, first + flow_layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
     k0 = _stiff_rate(problem, V0)
     split_powers = _split_powers(problem, sign, onsets)
     split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
-    V, delta, V_end = _layer_motions(problem, sign, V0=V0, k0=k0, split=split)
+    V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
     # dE/du: all E up to the split lie between the lowest u and 1; axes (octave, V, octave of u, u)
-    width = np.where(
+    half = _LAYER.half * np.where(
         np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT,
         split[..., None] / (1.0 - _LOWEST_U),
         1.0,
     )
-    half = width * _LAYER.half
     V_ratio = V / V0[..., None, None]
     # d(loss)/dE divided by V0^2: the power delta V Q in time gamma t, and dE = k0 d(gamma t)
-    loss = delta * V_ratio * problem.contact_states(V, delta)[TRACTION] / (V0 * k0)[..., None, None]
+    loss = (
+        delta
+        * V_ratio
+        * problem.contact_states(V, delta)[flow_layout.TRACTION]
+        / (V0 * k0)[..., None, None]
+    )
     slopes = V_ratio - 1.0, V_ratio * (1.0 + delta) - 1.0, loss
     columns = [np.log(V_ratio), delta, *(_COARSE.integrals(slope, half) for slope in slopes)]
     for column, values in enumerate(columns):
@@ -422,15 +423,14 @@ def fill_layers(
     # smooth difference, for which 12 are enough
     above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
     rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
-    excess = [_pad(_COARSE.powers(value)) for value in (x, angle, lost)]
-    asymptote[:] = np.concatenate(
+    x, angle, lost = (_pad(_COARSE.powers(value)) for value in (x, angle, lost))
+    asymptote[:] = np.hstack(
         [
             interleave_pairs(slow_log_at_V + _pad(above), rates),
             _pad(split_powers),
-            interleave_pairs(*excess[:2]),
-            excess[2],
-        ],
-        axis=-1,
+            interleave_pairs(x, angle),
+            lost,
+        ]
     )
 
 
@@ -442,7 +442,7 @@ def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     V : speeds, > 0, dimensionless, of any shape.
     Returns the rates, > 0, dimensionless, in the shape of V.
     """
-    return (1.0 + 1.0 / problem.parameters[3]) * problem.contact_states(V)[STIFFNESS] / V
+    return (1.0 + 1.0 / problem.j) * problem.contact_states(V)[flow_layout.STIFFNESS] / V
 
 
 def _state_before_onset(
@@ -460,15 +460,14 @@ def _state_before_onset(
     to split, or 1/k0 where the split is still sought; > 0, (n,), dimensionless.
     Returns (V, delta), (n,) each, dimensionless, to first order in that time.
     """
-    _, _, mu, j = problem.parameters
     state = problem.contact_states(V)
-    push = sign * mu
-    half_moment = 0.5 * state[MOMENT]
+    push = sign * problem.mu
+    half_moment = 0.5 * state[flow_layout.MOMENT]
     tau = _LEAD * gamma
     # full slip: V' = push - M/2 and j omega' = -(push + M/2) in time gamma t, backward from onset
     before = V - tau * (push - half_moment)
     return before, (
-        V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / j
+        V * (1.0 + sign * state[flow_layout.DELTA_STAR]) + tau * (push + half_moment) / problem.j
     ) / before - 1.0
 
 
@@ -496,14 +495,13 @@ def _layer_motions(
     V_on, delta_on = problem.integrate(
         V[:, -1],
         delta[:, -1],
-        gamma=1.0 / k0.ravel(),
-        t=np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
-        reason=STICK_ENDS,
+        1.0 / k0.ravel(),
+        np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
+        STICK_ENDS,
     )
     shape = (*V0.shape, _LAYER.half.size, _COARSE.t.size)
     V_whole, delta_whole = (
-        np.concatenate([a[:, :-1], b[:, :-1]], axis=1).reshape(shape)
-        for a, b in ((V, V_on), (delta, delta_on))
+        np.hstack([a[:, :-1], b[:, :-1]]).reshape(shape) for a, b in ((V, V_on), (delta, delta_on))
     )
     return V_whole, delta_whole, V_on[:, -1].reshape(V0.shape)
 
@@ -524,9 +522,9 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
     """
     powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
     powers[:, 0] = 1.0
-    if sign != np.sign(1.0 - problem.parameters[3]):
+    if sign != np.sign(1.0 - problem.j):
         return powers
-    V = (onsets.node_positions(_SPLIT_NODES) / problem.parameters[1]).ravel()
+    V = (onsets.node_positions(_SPLIT_NODES) / problem.kappa).ravel()
     gamma = 1.0 / _stiff_rate(problem, V)
     _, delta = problem.integrate(
         *_state_before_onset(problem, sign, V, gamma), gamma, _LEAD + _CROSSINGS, STICK_ENDS

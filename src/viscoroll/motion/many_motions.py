@@ -5,12 +5,10 @@ alpha, the ``T_ref`` of any other material.  Speeds are divided by R/T_ref.  gam
 R).
 """
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import Parameters
 from ..core import (
     TIME_POWERS,
     Booleans,
@@ -28,7 +26,7 @@ from ..laws import record_of_alphas, record_of_materials
 from ..laws.law_table import law_table
 from ..materials import Bodies
 from .flow import FlowResult, flow_map, look_up_ensemble
-from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES, dimensionless_error
+from .motion_arguments import LOSSES, SPEED_RANGE, STATES, dimensionless_error
 from .motion_problem import MotionProblem, integrate
 
 #: Motions in a block of work where all are integrated: some hundredths of a second.
@@ -98,7 +96,8 @@ def solve_batch(
     scene = batch.problem.scene
     immobile = batch.immobile
     free = not batch.problem.driven and scene.like_bodies and not scene.tabulated
-    if method == "flow" and (scene.shape or not free):
+    mappable = free and not scene.shape
+    if method == "flow" and not mappable:
         which = (
             "motions differ in more than V0 and omega0"
             if free
@@ -108,17 +107,14 @@ def solve_batch(
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
-    mapped = method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)
-    if free and not scene.shape and mapped:
+    if mappable and (method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)):
         found = _solve_by_flow_map(batch, speed, about)
     if found is None:
         found = FlowResult.empty(len(batch.rows), immobile.size, batch.times.size)
-    about["flow"] = found.status >= 0
-    if immobile.any():
-        about["flow"] &= ~immobile
-        found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
-        found.status[immobile] = MotionStatus.CAUGHT
-        found.switches[immobile] = 0
+    about["flow"] = (found.status >= 0) & ~immobile
+    found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
+    found.status[immobile] = MotionStatus.CAUGHT
+    found.switches[immobile] = 0
     about["steps"] = _integrate_others(found, batch)
     return found, about
 
@@ -146,39 +142,37 @@ def _solve_by_flow_map(
     rows = batch.rows
     rtol, threshold, _ = batch.problem.limits
     unit = scene.in_own_time()[1]
-    V0, omega0 = (
-        batch.inputs[name] if unit == 1.0 else batch.inputs[name] * unit
-        for name in ("V0", "omega0")
-    )
+    V0, omega0 = (batch.inputs[name] * unit for name in ("V0", "omega0"))
     if speed is None:
         speed = max(
             (abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0
         )
     elif (speed := speed * unit) > SPEED_RANGE[1]:
-        text = "speed = {}: must be at most {}"
-        raise dimensionless_error("speed", text, "V", speed / unit, SPEED_RANGE[1] / unit)
+        raise dimensionless_error(
+            "speed", "speed = {}: must be at most {}", "V", speed / unit, SPEED_RANGE[1] / unit
+        )
     if not speed > 0.0:
         return None
     chosen = flow_map(scene, speed, threads=batch.threads)
-    error = chosen.stated_error(
-        path=not {"x", "angle"}.isdisjoint(rows), loss=not set(LOSSES).isdisjoint(rows)
+    speeds, path, losses = chosen.errors
+    error = max(
+        speeds,
+        path if {"x", "angle"} & {*rows} else 0.0,
+        losses if {*LOSSES} & {*rows} else 0.0,
     )
     problem = chosen.problem and f"no flow map, so motions are integrated: {chosen.problem}"
     about |= {"flow_error": error, "flow_problem": problem}
     if not error <= rtol:  # true of NaN too
         return None
-    wanted = tuple((STATES + LOSSES).index(name) for name in rows)
     motions = Motions(
-        gamma=scene.gamma * unit * unit,  # an acceleration times a time squared
-        rest=threshold * unit,
-        V0=V0,
-        omega0=omega0,
-        t=batch.times / unit,
-        rows=wanted,
+        scene.gamma * unit * unit,  # an acceleration times a time squared
+        threshold * unit,
+        V0,
+        omega0,
+        batch.times / unit,
+        tuple((STATES + LOSSES).index(name) for name in rows),
     )
     found = look_up_ensemble(chosen, motions, threads=batch.threads, progress=batch.progress)
-    if unit == 1.0:
-        return found
     for n, name in enumerate(rows):
         found.out[n] *= unit ** TIME_POWERS.get(name, 0)
     return found._replace(onset=found.onset * unit, rest=found.rest * unit)
@@ -196,8 +190,6 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     result.
     """
     problem = batch.problem
-    law = _law_of(problem.scene, problem.unsteady)
-    rows = np.array([ROWS.index(name) for name in batch.rows], np.int64)
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -210,19 +202,18 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
         left = start + np.flatnonzero(found.status[start:stop] < 0)
         if not left.size:
             return
-        inputs = batch.inputs.values()
         alpha, *others = (
             broadcast_vector(array[left], left.shape) if array.size > 1 else array
-            for array in inputs
+            for array in batch.inputs.values()
         )
-        arguments = (
-            (*law(alpha, left), *others),
+        found.out[:, left], info = integrate(
+            left.size,
+            (*_law_of(problem, alpha, left), *others),
             problem.functions.for_kernel(left),
             batch.times,
             problem.limits,
-            rows,
+            batch.rows,
         )
-        found.out[:, left], info = integrate(left.size, *arguments)
         (
             found.status[left],
             steps[left],
@@ -231,53 +222,41 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
             found.rest[left],
         ) = info.T
 
+    block = _MAPPED_BLOCK if found.status.max(initial=-1) >= 0 else _BLOCK
     # with the added mass and a material each the law is that of one motion
-    mapped = found.status.max(initial=-1) >= 0
-    block = (
-        _MAPPED_BLOCK
-        if mapped
-        else 1
-        if problem.unsteady and np.ndim(problem.scene.alpha)
-        else _BLOCK
+    if problem.unsteady and np.ndim(problem.scene.alpha):
+        block = 1
+    run_blocks(
+        work,
+        steps.size,
+        problem.functions.block(block),
+        threads=batch.threads,
+        progress=batch.progress,
     )
-    block = problem.functions.block(block)
-    run_blocks(work, steps.size, block, threads=batch.threads, progress=batch.progress)
     return steps
 
 
-def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
-    """Return the function that gives the kernel's law of some motions.
+def _law_of(problem: MotionProblem, alpha: NDArray, index: Integers) -> tuple[Any, bool]:
+    """Return the law of some motions as the kernel takes it.
 
-    scene: :class:`Parameters` of the motions, of one material or of several; ``alpha``,
-    ``material``, ``material_array`` and ``rolling_law`` are read.
-    unsteady: whether the added mass acts.  The function must then be called for one motion at a
-    time if the materials differ, since the law with N belongs to one material.
-    Returns a function of the alphas of the motions, (k,), and of their indices, (k,).  It returns
-    (the record of the law, or of the k laws, as the kernels take it; whether half-space and
-    cylinder may take unequal parts of M, which is True for any list of two bodies).  Where all
-    motions have one material the function ignores its arguments.
+    problem: :class:`MotionProblem` of all motions, of one material or of several, of which the
+    scene and ``unsteady`` are read.
+    alpha: alphas of the motions, (k,); (1,) if all have the same.  Read only where each motion has
+    its own alpha in place of a material.
+    index: indices of the motions, (k,), from which their materials are taken; k = 1 with the added
+    mass if the materials differ, since the law with N belongs to one material.
+    Returns (record of the law or laws; whether half-space and cylinder may take unequal parts of M,
+    which is True for any list of two bodies).
     """
+    scene = problem.scene
     if (table := scene.rolling_law) is not None:
-        law = (table.unsteady_record if unsteady else table.record), table.unlike
-        return lambda alpha, index: law
+        return (table.unsteady_record if problem.unsteady else table.record), table.unlike
     several: Any = scene.material_array
-
-    def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
-        """Return the law of some motions as the kernel takes it.
-
-        alpha: alphas of the motions, (k,); (1,) if all have the same, and with the added mass.
-        Ignored where the scene has several materials.
-        index: indices of the motions, (k,), from which their materials are taken; ignored where
-        each motion has only an alpha.
-        Returns (record of the law or laws; whether the bodies may take unequal parts of M).
-        """
-        if several is None:
-            one = law_table(alpha.item()).unsteady_record if unsteady else record_of_alphas(alpha)
-            return one, False
-        # one material for all motions is index 0
-        index = np.minimum(index, len(several) - 1)
-        if unsteady:
-            return law_table(scene.material[index.item()]).unsteady_record, False  # type: ignore[index]
-        return record_of_materials(several, index), isinstance(several, Bodies)
-
-    return make
+    # one material for all motions is index 0
+    index = index if several is None else np.minimum(index, len(several) - 1)
+    if problem.unsteady:
+        one: Any = alpha.item() if several is None else scene.material[index.item()]  # type: ignore[index]
+        return law_table(one).unsteady_record, False
+    if several is None:
+        return record_of_alphas(alpha), False
+    return record_of_materials(several, index), isinstance(several, Bodies)

@@ -4,6 +4,7 @@ gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -22,11 +23,8 @@ from ..core import (
     Units,
     broadcast_shape,
     check_array,
-    check_integer,
-    check_number,
     digits_beside,
     extent,
-    make_dimensionless,
     shape_error,
     strip_labels,
 )
@@ -35,7 +33,7 @@ from ..core import (
 
 #: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no
 #: longer proportional.
-RTOL_RANGE = (1e-12, 1e-2)
+RTOL_RANGE = {"low": 1e-12, "high": 1e-2}
 #: Smallest and largest start speed, dimensionless: beyond them intermediate results leave the range
 #: of doubles.
 SPEED_RANGE = (1e-300, 1e100)
@@ -58,7 +56,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
         raise shape_error("t", times.shape, "one end time or a vector of output times")
     falls = times[1:] < times[:-1]
     if falls.any():
-        n = int(np.argmax(falls))
+        n = falls.argmax()
         pair = times[n : n + 2]
         found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at index {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
@@ -69,53 +67,23 @@ def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number.
 
     arguments: name of an argument of ``roll`` -> its value.  Numbers, arrays of shape () and None
-    pass, and so does what is no array, which is checked elsewhere.
+    pass, and so does what is no array, which is checked elsewhere; a nested list of unequal lengths
+    counts as a vector of lists.
     The error is that of the first argument with axes, also of shape (1,); without one None is
     returned.
     """
     for name, value in arguments.items():
-        if type(value) is not float and (shape := _shape(value)):
-            sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
-            raise ParameterError(name, shape, "a single number", sentence)
-
-
-def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument as an array.
-
-    value: an argument of any type; a nested list of unequal lengths counts as a vector of lists.
-    Returns a tuple of ints; () for a number, None and all else that has no shape.  Never raises.
-    """
-    try:
-        return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
-    except (TypeError, ValueError):
-        return ()
-
-
-def controls(
-    rtol: float, rest: float | None, max_steps: int, scale: Scale
-) -> tuple[float, float, int]:
-    """Check the limits of an integration.
-
-    rtol: relative tolerance of the motion, dimensionless.
-    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller,
-    perhaps with a unit;
-    None: a motion does not end at rest.
-    max_steps: largest number of steps of a motion.
-    scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read; if ``rest`` is given
-    it must be one number for all motions.
-    Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps,
-    an int).
-    Raises ParameterError for rtol that is no single number in [1e-12, 1e-2], rest that is no single
-    number, not positive and finite or in a unit of another dimension, max_steps outside [1, 10^7]
-    or no whole number.
-    """
-    low, high = RTOL_RANGE
-    if not low <= check_number("rtol", rtol) <= high:
-        raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    threshold = (
-        0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"]
-    )
-    return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
+        try:
+            shape = tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
+        except (TypeError, ValueError):
+            shape = ()
+        if shape:
+            raise ParameterError(
+                name,
+                shape,
+                "a single number",
+                f"roll computes one motion, but {name} has shape {shape}: use ensemble",
+            )
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
@@ -128,14 +96,9 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     of |V0| and |omega0| of each motion is 0 or at least 1e-300, and the shapes broadcast.
     """
     low, high = SPEED_RANGE
-    # each by itself: max() of a NaN and another may be the other
-    if (
-        type(V0) is float
-        and type(omega0) is float
-        and -high <= V0 <= high
-        and -high <= omega0 <= high
-    ):
-        if abs(V0) >= low or abs(omega0) >= low:
+    # max() of a number and a NaN after it is the number
+    if type(V0) is type(omega0) is float and not math.isnan(omega0):
+        if low <= max(abs(V0), abs(omega0)) <= high:
             return V0, omega0
     V = check_array("V0", V0)
     omega = check_array("omega0", omega0)
@@ -143,8 +106,14 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     for name, array in (("V0", V), ("omega0", omega)):
         if array.size and max(map(abs, extent(array))) > high:
             n = int(np.abs(array).argmax())
-            text = f"{name} = {{}}: must be at most {{}} in magnitude"
-            raise dimensionless_error(name, text, name, array.flat[n], high, motion=n)
+            raise dimensionless_error(
+                name,
+                f"{name} = {{}}: must be at most {{}} in magnitude",
+                name,
+                array.flat[n],
+                high,
+                motion=n,
+            )
     # in parts whose size does not depend on that of the arrays
     for V_part, omega_part in np.nditer(
         (V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16
@@ -153,8 +122,14 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
         if ((larger > 0.0) & (larger < low)).any():
             larger = np.maximum(np.abs(V), np.abs(omega))
             n = int(np.where(larger > 0.0, larger, np.inf).argmin())
-            text = "max(|V0|, R |omega0|) = {}: must be 0, or at least {}"
-            raise dimensionless_error("V0, omega0", text, "V0", larger.flat[n], low, motion=n)
+            raise dimensionless_error(
+                "V0, omega0",
+                "max(|V0|, R |omega0|) = {}: must be 0, or at least {}",
+                "V0",
+                larger.flat[n],
+                low,
+                motion=n,
+            )
     return V, omega
 
 
@@ -195,9 +170,7 @@ def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
     error: the :class:`ParameterError`.
     scale: :class:`Scale` of the roller.
     """
-    if not (scale.si and error.dimensionless):
-        return error
-    return error.dimensionless(scale=scale)
+    return error.dimensionless(scale=scale) if scale.si and error.dimensionless else error
 
 
 # --- What drives motions, as the caller gives it ---
@@ -219,8 +192,7 @@ class Drive(NamedTuple):
     force, torque, brake, omega, V : a number, an array (n,), a Schedule or a callable of t; force
     and torque also a Feedback of one of these.
     slope, drag : numbers or arrays (n,).
-    Meaning, signs and units are those of :func:`viscoroll.roll`; :meth:`over` gives the
-    dimensionless ones.
+    Meaning, signs and units are those of :func:`viscoroll.roll`.
     """
 
     force: Any = None
@@ -244,34 +216,17 @@ class Drive(NamedTuple):
         return {n: x.value if isinstance(x, Feedback) else x for n, x in self.given.items()}
 
     @property
-    def numbers(self) -> dict[str, Floats]:
-        """Return name -> array, () or (n,), of each load or speed that is given as a number or as
-        one for each motion, also in a feedback.
+    def numbers(self) -> dict[str, Any]:
+        """Return name -> array of each load or speed that is given as a number or as one for each
+        motion, also in a feedback, unchecked.
 
-        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the
-        drag are among them.  Schedules and callables are left out.  Raises ParameterError for what
-        is not numeric or not finite.
+        The angle of a slope and the drag are among them.  Schedules and callables are left out.
         """
         return {
-            n: check_array(n, x)
+            n: np.asarray(x)
             for n, x in self.values.items()
             if not (callable(x) or isinstance(x, Schedule))
         }
-
-    @property
-    def acts(self) -> bool:
-        """Whether anything is given."""
-        # all are None; written out, as every call of roll asks
-        return not (
-            self.force
-            is self.torque
-            is self.slope
-            is self.brake
-            is self.drag
-            is self.omega
-            is self.V
-            is None
-        )
 
     def without_zeros(self) -> Drive:
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times;
@@ -281,28 +236,12 @@ class Drive(NamedTuple):
         is.
         Raises ParameterError for a load that is no number and no function of time, or not finite.
         """
-        return self._replace(
+        return Drive(
             **{
-                name: None
+                name: value
                 for name, value in self.given.items()
-                if name not in ("omega", "V") and _is_zero(name, value)
+                if name in ("omega", "V") or not _is_zero(name, value)
             }
-        )
-
-    def over(self, scale: Scale) -> Drive:
-        """Return the same drive made dimensionless; for a scene, and where nothing is given, it is
-        this drive itself.
-
-        scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the
-        result take the time in T_ref, the unit of time of that scale.
-        Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, a
-        callable for many cylinders or one that cannot be called with a time alone, and an array
-        whose length is not the number of cylinders.
-        """
-        return (
-            Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
-            if scale.si and self.acts
-            else self
         )
 
 

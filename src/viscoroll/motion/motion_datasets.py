@@ -129,28 +129,24 @@ class RollResult(Result):
 
 # --- Datasets ---
 
+#: Variables of a dataset: name -> (dimensions, values, attributes), as xarray takes them.
+Variables = dict[str, Any]
 #: Comment of a schedule in a dataset.
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
 
 
-def _flags(long_name: str, first: int, meanings: str) -> dict[str, Any]:
-    """Return the attributes of a column of codes, as CF has them.
-
-    long_name: its long_name.
-    first: the first code; the others follow it.
-    meanings: meanings of all codes, a word each.
-    """
-    values = np.arange(first, first + len(meanings.split()), dtype=np.int8)
-    return {"long_name": long_name, "flag_values": values, "flag_meanings": meanings}
-
-
-#: Columns of codes.
+#: Attributes of columns of codes, as CF has them.
 _FLAGS = {
-    "regime": _flags("regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
-    "status": _flags(
-        "how the motion ended", 0, " ".join(status.name.lower() for status in MotionStatus)
-    ),
-    "flow": _flags("source of the motion", 0, "integrated flow_map"),
+    name: {
+        "long_name": long_name,
+        "flag_values": np.arange(first, first + len(meanings.split()), dtype=np.int8),
+        "flag_meanings": meanings,
+    }
+    for name, long_name, first, meanings in (
+        ("regime", "regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
+        ("status", "how the motion ended", 0, " ".join(MotionStatus.__members__).lower()),
+        ("flow", "source of the motion", 0, "integrated flow_map"),
+    )
 }
 
 
@@ -179,7 +175,7 @@ def _dataset(
     result: RollResult,
     title: str,
     dims: tuple[str, ...],
-    variables: dict[str, Any],
+    variables: Variables,
     about: dict[str, Any],
 ) -> Dataset:
     """Return the dataset of a motion or an ensemble.
@@ -199,7 +195,7 @@ def _dataset(
     T_ref; and the texts of :func:`_describe_drive`.
     """
     si = result.scale.si
-    acts = result.drive.acts or "motion" in dims
+    acts = result.drive.given or "motion" in dims
     data = {}
     # of a free motion loads and works are 0 or follow from the states; an ensemble has what it kept
     for name in ROWS if acts else STATES:
@@ -229,7 +225,7 @@ def _dataset(
     )
 
 
-def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
+def _describe_drive(result: RollResult) -> tuple[Variables, dict[str, Any]]:
     """Describe the drive of a result by variables and attributes of its dataset.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion,
@@ -242,32 +238,31 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     ``drive_force_time``, in the units of the roller; name -> text of attributes that describe
     callables with their gains).  Both are empty without a drive.
     """
-    variables: dict[str, Any] = {}
+    variables: Variables = {}
     texts: dict[str, Any] = {}
     for name, given in result.drive.given.items():
         key = f"drive_{name}"
         value, gains = _value_and_gains(given)
         gains = {f"gain_{speed}": gain for speed, gain in gains.items()}
         if callable(value):
-            parts = (
+            texts[key] = "a function of t" + "".join(
                 f", {gain} = {format_value(x) if np.ndim(x) else f'{x:.15g}'}"
                 for gain, x in gains.items()
             )
-            texts[key] = "a function of t" + "".join(parts)
             continue
         about = attributes(name, result.scale.si)
         about = about | {"long_name": f"given: {about['long_name']}"} | gains
         dims: tuple[str, ...] = ("motion",)
         if isinstance(value, Schedule):
-            about_times = {
-                "long_name": f"times of the given {name}",
-                "units": result.scale.unit("t"),
-            }
             # of one axis if all motions have the same corners, which then are a coordinate
             times = _shared(value.times, 1)
             value = value.values
             dims = "motion", f"{key}_time" if times.ndim == 1 else f"{key}_corner"
-            variables[f"{key}_time"] = dims[-times.ndim :], times, about_times
+            variables[f"{key}_time"] = (
+                dims[-times.ndim :],
+                times,
+                {"long_name": f"times of the given {name}", "units": result.scale.unit("t")},
+            )
             about = about | {"comment": _LINEAR}
         # what all motions share has no axis of the motions: "motion", the first of dims, falls away
         array = _shared(np.asarray(value, np.float64), len(dims) - 1)
@@ -319,10 +314,10 @@ def describe_values(t: NDArray, values: NDArray) -> str:
     first one of equal ones, and numbers to six digits; without it where it is printed like the
     first or the last; the number alone for one time; "not reached" where all values are NaN.
     """
-    if np.isnan(values).all():
-        return "not reached"
     reached = values[~np.isnan(values)]
-    peak = int(np.nanargmax(np.abs(values)))
+    if not reached.size:
+        return "not reached"
+    peak = np.nanargmax(np.abs(values))
     first, most, last = (f"{value:.6g}" for value in (reached[0], values[peak], reached[-1]))
     if t.size == 1:
         return first
@@ -341,7 +336,7 @@ def _shared(array: NDArray, own: int = 0) -> NDArray:
     return array[0] if array.ndim > own and len(array) == 1 else array
 
 
-def _material_variables(materials: Any, count: int) -> dict[str, Any]:
+def _material_variables(materials: Any, count: int) -> Variables:
     """Return strengths and times of several materials, and share or thickness, as variables.
 
     materials: :class:`Prony`, :class:`Bodies` or :class:`Cover` of several motions; for one
@@ -362,7 +357,7 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     if not isinstance(materials, Bodies):
         return _mode_variables(materials, count, "", "")
 
-    def along(name: str, values: Any, long_name: str, **more: Any) -> dict[str, Any]:
+    def along(name: str, values: Any, long_name: str, **more: Any) -> Variables:
         """Return one variable over the motions, as a dict name -> (dimensions, values, attributes).
 
         name: name of the variable.
@@ -375,13 +370,16 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 
     if isinstance(materials, Cover):
         layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
-        name = (
+        found = along(
+            "cover_thickness",
+            materials.thickness,
             "thickness of the cover divided by l0, the contact length at rest of half-spaces under "
-            "the same load"
+            "the same load",
+            **layer,
         )
-        found = along("cover_thickness", materials.thickness, name, **layer)
-        nu = along("cover_nu", materials.nu, "Poisson's ratio of the cover")
-        return found | nu if np.ndim(materials.nu) else found
+        if np.ndim(materials.nu):
+            found |= along("cover_nu", materials.nu, "Poisson's ratio of the cover")
+        return found
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")
@@ -389,7 +387,7 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     )
 
 
-def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
+def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> Variables:
     """Return the strengths and times of the modes of one body, over (motion, mode), as variables.
 
     series: :class:`Prony`, the series of each motion, or one for all.
@@ -406,17 +404,16 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
         if series.by_creep
         else ("relaxation", "modulus", series.E, series.tau)
     )
-    parts = {
-        "strengths": (strengths, f"strengths of {form} divided by the long-time {total}"),
-        "times": (times, f"times of {form} divided by T_ref"),
-    }
     return {
         f"{prefix}{form}_{name}": (
             ("motion", f"{prefix}mode"),
             np.broadcast_to(values, (count, np.shape(values)[-1])),
             {"long_name": title + about, "units": "1"},
         )
-        for name, (values, about) in parts.items()
+        for name, values, about in (
+            ("strengths", strengths, f"strengths of {form} divided by the long-time {total}"),
+            ("times", times, f"times of {form} divided by T_ref"),
+        )
     }
 
 
@@ -430,10 +427,6 @@ def motion_dataset(motion: Any) -> Dataset:
     onset_time and rest_time (NaN where there is none), switches ("t = T: REGIME; ..."), status in
     words, and steps.
     """
-    about_reversals = {
-        "long_name": "times at which V changes its sign",
-        "units": motion.scale.unit("t"),
-    }
     about = motion.scene.numbers | {
         "onset_time": motion.onset_time,
         "rest_time": motion.rest_time,
@@ -441,15 +434,19 @@ def motion_dataset(motion: Any) -> Dataset:
         "status": motion.message,
         "steps": motion.steps,
     }
-    variables = (
-        {"reversals": ("reversal", motion.reversals, about_reversals)} if motion.drive.acts else {}
-    )
+    variables = {}
+    if motion.drive.given:
+        variables["reversals"] = (
+            "reversal",
+            motion.reversals,
+            {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")},
+        )
     return _dataset(
         motion,
         "Motion of a viscoelastic cylinder rolling with partial slip",
-        dims=("t",),
-        variables=variables,
-        about=about,
+        ("t",),
+        variables,
+        about,
     )
 
 
@@ -474,11 +471,10 @@ def ensemble_dataset(result: Any) -> Dataset:
         variables[name] = "motion", result[name], column_attributes(name, si)
     variables["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
-    dataset = _dataset(
-        result, "Ensemble of motions", dims=("motion", "t"), variables=variables, about=about
-    )
-    if result.labels is None or result.labels.shape != (len(result),):
+    dataset = _dataset(result, "Ensemble of motions", ("motion", "t"), variables, about)
+    labels = result.labels
+    if labels is None or labels.shape != (len(result),):
         return dataset
     return dataset.assign_coords(
-        result.labels.axes_beside({*dataset.variables, *dataset.dims}, "motion")[1]
+        labels.axes_beside({*dataset.variables, *dataset.dims}, "motion")[1]
     )

@@ -24,33 +24,32 @@ from ..contact_mechanics import (
 from ..contact_mechanics.contact import contact
 from ..core import (
     Floats,
-    Integers,
     MotionStatus,
     NDArray,
     ParameterError,
     Scale,
-    broadcast_vector,
     check_array,
     check_bool,
+    check_integer,
     check_number,
     make_dimensionless,
     run_blocks,
 )
 from ..laws.law_table import law_table
-from .drive_functions import (
-    UNDRIVEN,
-    DriveFunctions,
-    DrivenStart,
-    KernelDrive,
-    prepare_drive,
-    refuse_rest,
+from .drive_functions import UNDRIVEN, DriveFunctions, KernelDrive, prepare_drive
+from .motion_arguments import (
+    LOSSES,
+    MOST_STEPS,
+    ROWS,
+    RTOL_RANGE,
+    STATES,
+    Drive,
+    require_single,
+    with_scales,
 )
-from .motion_arguments import LOSSES, ROWS, STATES, Drive, controls, require_single, with_scales
 
-#: Indices of all rows of the kernel's output.
-_ALL_ROWS = np.arange(len(ROWS))
-#: Indices of the rows of free motions.
-_FREE_ROWS = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
+#: Quantities of free motions, rows of the kernel's output.
+_FREE_ROWS = STATES + LOSSES
 #: (rtol, threshold of rest, step limit) of the motions of a flow map: as accurate as the integrator
 #: is, where alpha = 1e10 takes tens of thousands of steps.
 _MAP_LIMITS = (1e-12, 0.0, 100_000)
@@ -149,10 +148,9 @@ def make_problem(
     left out, the start speeds are reduced by the cost of a standstill, and the step limit is raised
     by the number of corners of the drive; nothing is integrated.
     """
-    acts = drive.acts
     if single:
-        require_single(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
-    drive = drive.without_zeros() if acts else drive
+        require_single(V0=start[0], omega0=start[1], **drive.numbers)
+    drive = drive.without_zeros()
     rtol, rest, max_steps, resolve, unsteady, rested = options
     roller, scene, scale = resolve_model(
         roller, "roll" if single else "ensemble", moves=True, slope=drive.slope
@@ -161,70 +159,75 @@ def make_problem(
         require_single(material=roller.material, **roller.numbers)
     # one threshold in m/s would be another dimensionless number for each motion
     if rest is not None and np.ndim(scale["V"]):
-        sentence = (
+        raise ParameterError(
+            "rest",
+            rest,
+            "None",
             f"rest = {rest!r:.60} is one threshold in m/s for all motions, but R or T_ref "
-            "(T_epsilon) differs between them: leave rest out, or give all one R and one T_ref"
+            "(T_epsilon) differs between them: leave rest out, or give all one R and one T_ref",
         )
-        raise ParameterError("rest", rest, "None", sentence)
-    unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
-    driven = unsteady or (acts and drive.acts)
+    unsteady = _check_unsteady(unsteady, scene)
     if (last := float(end) / scale["t"]) == math.inf:
         longest = sys.float_info.max * min(scale["t"], 1.0)
         raise ParameterError("t", end, f"less than {longest:.3g}")
+    rtol = check_number("rtol", rtol, **RTOL_RANGE)
+    # 0.0: a motion does not end at rest
+    threshold = (
+        0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"]
+    )
+    max_steps = check_integer("max_steps", max_steps, 1, MOST_STEPS)
+    if resolve is not None:
+        if not any(map(callable, drive.values.values())):
+            raise ParameterError(
+                "resolve",
+                resolve,
+                "left out",
+                f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
+                "leave it out",
+            )
+        resolve = check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
     try:
-        limits = controls(rtol, rest, max_steps, scale)
         V0 = make_dimensionless("V0", start[0], scale)
         omega0 = make_dimensionless("omega0", start[1], scale)
-        spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
-        prepared = prepare_drive(
-            drive.over(scale), V0, omega0=omega0, end=last, rtol=rtol, resolve=spacing
+        loads = {name: make_dimensionless(name, x, scale) for name, x in drive.given.items()}
+        functions, V0, omega0 = prepare_drive(
+            Drive(**loads), V0, omega0, last, rtol, resolve=resolve
         )
-        functions = prepared.functions
-        # a step ends at every corner; rtol and the threshold of rest stay
-        limits = (*limits[:2], limits[2] + functions.corners)
-        if rest is not None:
-            refuse_rest(rest, functions)
-        V0, omega0, immobile = _apply_standstill(prepared, scene, rested, scale)
+        V0, omega0, immobile = _apply_standstill(
+            V0, omega0, functions.prescribed, scene, rested, scale
+        )
     except ParameterError as error:
         raise with_scales(error, scale) from error
-    if single and functions.counts != (1, 1):
+    if rest is not None and functions.acts_at_end:
+        raise ParameterError(
+            "rest",
+            rest,
+            "None",
+            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
+            "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
+            "time at which a brake stops the cylinder)",
+        )
+    if single:
         many = {
             name: f.terms[:, 0, 0] for name, f in functions.functions.items() if len(f.terms) > 1
         }
-        require_single(**many, **{"a gain, V or omega of a Feedback,": functions.gains[0]})
-    return MotionProblem(
-        roller=roller,
-        scene=scene,
-        drive=drive,
-        functions=functions,
-        V0=V0,
-        omega0=omega0,
-        immobile=immobile,
-        end=last,
-        limits=limits,
-        unsteady=unsteady,
-        driven=driven,
-    )
-
-
-def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
-    """Check ``resolve``, the largest spacing of the samples of a callable, and return it in T_ref.
-
-    resolve: the argument of the caller, not None: one number, in T_ref of a scene, in s or with a
-    unit of time of a cylinder.
-    drive: :class:`Drive` of the motions, of which :attr:`Drive.values` is read.
-    scale: :class:`Scale` of the roller, which converts s to T_ref.
-    Returns a float > 0.
-    Raises ParameterError unless ``resolve`` is one finite number above 0 without a unit of another
-    dimension, and the drive has a callable.
-    """
-    if not any(map(callable, drive.values.values())):
-        sentence = (
-            f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
-            "leave it out"
+        require_single(
+            **many, **{"a gain, V or omega of a Feedback,": functions.gains[0].squeeze()}
         )
-        raise ParameterError("resolve", resolve, "left out", sentence)
-    return check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
+    return MotionProblem(
+        roller,
+        scene,
+        drive,
+        functions,
+        V0,
+        omega0,
+        immobile,
+        last,
+        # a step ends at every corner
+        (rtol, threshold, max_steps + functions.corners),
+        unsteady,
+        driven=unsteady or bool(drive.given),
+    )
 
 
 def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
@@ -238,24 +241,25 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refused = scene if scene.like_bodies else scene.uncoupled
-    refuse_cover(refused, "leave unsteady=True out, as the added mass N is not computed")
-    if not scene.like_bodies:
-        sentence = (
+    if scene.cover is None and not scene.like_bodies:
+        raise ParameterError(
+            "unsteady",
+            True,
+            "False where bodies differ",
             "unsteady = True: motions with the added mass N are computed for two bodies of "
-            "one material only; leave unsteady=True out"
+            "one material only; leave unsteady=True out",
         )
-        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
+    refuse_cover(scene, "leave unsteady=True out, as the added mass N is not computed")
     return True
 
 
 def _apply_standstill(
-    start: DrivenStart, scene: Parameters, rested: Any, scale: Scale
+    V0: Any, omega0: Any, prescribed: str, scene: Parameters, rested: Any, scale: Scale
 ) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, of which only
-    ``prescribed`` is read.
+    V0, omega0: start speeds, dimensionless, numbers or (n,).
+    prescribed: name of the prescribed speed, "" for none.
     scene: :class:`Parameters`, dimensionless, of the roller, with gamma.
     rested: argument of the caller: False or 0 (no standstill), True (a long one), or its time, in
     the unit of the roller.
@@ -277,28 +281,30 @@ def _apply_standstill(
         if time.ndim:
             raise ParameterError("rested", rested, "one time >= 0, or True")
     if time == 0.0:
-        return start.V0, start.omega0, False
+        return V0, omega0, False
     refuse_cover(
         scene, "leave rested out, as the loss of a start after a standstill is not computed"
     )
-    V = np.asarray(start.V0, np.float64)
+    V = np.asarray(V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     why = (
         "a speed is prescribed"
-        if start.functions.prescribed
+        if prescribed
         else "the cylinder starts at V0 = omega0 = 0 and must yet break away"
-        if np.any((V == 0.0) & (np.asarray(start.omega0) == 0.0))
-        else "the cylinder starts in full slip" * bool(np.any(np.abs(start.omega0 - V) > limit))
+        if np.any((V == 0.0) & (omega0 == 0.0))
+        else "the cylinder starts in full slip" * bool(np.any(np.abs(omega0 - V) > limit))
     )
     if why:
-        sentence = (
-            f"rested is given, but {why}: leave rested out, as the loss of the start is not known"
+        raise ParameterError(
+            "rested",
+            rested,
+            "left out",
+            f"rested is given, but {why}: leave rested out, as the loss of the start is not known",
         )
-        raise ParameterError("rested", rested, "left out", sentence)
     # part of V; V = 0 with omega0 = 0 was refused above, and without a limit any other omega0 slips
     lost = FreeRolling.of_scene(scene, V).start(time / scale["t"]).speed
     lost = lost / np.where(V == 0.0, 1.0, np.abs(V))
-    return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS
+    return V * (1.0 - lost), omega0 * (1.0 - lost), lost > LARGEST_LOSS
 
 
 def integrate(
@@ -307,7 +313,7 @@ def integrate(
     drive: KernelDrive,
     times: Floats,
     limits: tuple[float, float, int],
-    rows: Integers,
+    rows: tuple[str, ...],
     notes: tuple[NDArray, ...] = NO_NOTES,
 ) -> tuple[Floats, Floats]:
     """Integrate motions in the kernel.
@@ -319,7 +325,7 @@ def integrate(
     drive: drive of the motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
     times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
     limits: (rtol; threshold of rest, 0 for none; largest number of steps).
-    rows: (rows,), int, indices into :data:`.motion_arguments.ROWS`: the quantities to compute.
+    rows: names of the quantities to compute, out of :data:`.motion_arguments.ROWS`.
     notes: (switches, (k, 2): time in T_ref and new regime, or -1 where V changes its sign; ends of
     steps, (l,), in T_ref). Both are written from the front in the order of time; what exceeds their
     length is left out, and entries that are not needed stay as they were.  Each motion overwrites
@@ -332,9 +338,10 @@ def integrate(
     """
     from ..kernels.motion.driver import N_INFO_COLUMNS, motion_loop
 
-    out = np.empty((rows.size, count, times.size))
+    out = np.empty((len(rows), count, times.size))
     info = np.empty((count, N_INFO_COLUMNS))
-    motion_loop(batch, drive, times, limits, rows, out, info, notes)
+    row_indices = np.array([ROWS.index(name) for name in rows], np.int64)
+    motion_loop(batch, drive, times, limits, row_indices, out, info, notes)
     return out, info
 
 
@@ -358,7 +365,7 @@ def integrate_single(
     """
     scene = problem.scene
     if problem.immobile:
-        return np.full((_ALL_ROWS.size, times.size), np.nan), [
+        return np.full((len(ROWS), times.size), np.nan), [
             MotionStatus.CAUGHT,
             0,
             0,
@@ -373,11 +380,11 @@ def integrate_single(
     out, info = integrate(
         1,
         batch,
-        drive=problem.functions.for_kernel(),
-        times=times,
-        limits=problem.limits,
-        rows=_ALL_ROWS,
-        notes=notes,
+        problem.functions.for_kernel(),
+        times,
+        problem.limits,
+        ROWS,
+        notes,
     )
     if law.coupled is not None:
         refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
@@ -386,7 +393,7 @@ def integrate_single(
 
 def integrate_motions(
     parameters: tuple[Any, ...],
-    starts: tuple[Floats, Floats],
+    starts: Any,
     gamma: Floats,
     t: Floats,
     *,
@@ -400,43 +407,40 @@ def integrate_motions(
 
     parameters: (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series
     in its own unit of time.
-    starts: V0 and omega0, (n,) each, n >= 1, dimensionless.
+    starts: V0 and omega0, (n,) each, dimensionless.
     gamma: P T_ref^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, >
     0, (n,) or (1,).
     t: output times since the start, (times,), >= 0, ascending, common to all, in the material's
     unit of time.
     threads: number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
     available.
-    Raises ParameterError for a number of threads that is no whole number >= 1, ValueError for n =
-    0.
+    Raises ParameterError for a number of threads that is no whole number >= 1.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times),
-    dimensionless, NaN at times that a motion did not reach; status, steps, switches, onset and rest
-    time of each motion, (n, 5), as in :func:`integrate`).
+    dimensionless, NaN at times that a motion did not reach; onset time of each motion, (n,), NaN
+    where there is none).
     """
     material, kappa, mu, j = parameters
     law = law_table(material)
     count = starts[0].size
-    arrays = [
-        broadcast_vector(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)
-    ]
-    blocks = {}
+    arrays = np.array(np.broadcast_arrays(kappa, mu, gamma, j, *starts))
+    arrays.flags.writeable = False
+    out = np.empty((len(_FREE_ROWS), count, t.size))
+    onset = np.empty(count)
 
     def work(start: int, stop: int) -> None:
-        parts = (array[start:stop] if array.size > 1 else array for array in arrays)
-        batch = law.record, law.unlike, *parts
-        blocks[start] = integrate(
+        batch = law.record, law.unlike, *arrays[:, start:stop]
+        out[:, start:stop], info = integrate(
             stop - start,
             batch,
-            drive=UNDRIVEN.for_kernel(),
-            times=t,
-            limits=_MAP_LIMITS,
-            rows=_FREE_ROWS,
+            UNDRIVEN.for_kernel(),
+            t,
+            _MAP_LIMITS,
+            _FREE_ROWS,
         )
+        onset[start:stop] = info[:, 3]
 
     run_blocks(work, count, _BLOCK, threads=threads)
-    # threads end in any order
-    out, info = zip(*(blocks[start] for start in sorted(blocks)), strict=True)
-    return np.concatenate(out, axis=1), np.concatenate(info)
+    return out, onset
 
 
 # --- A scene for which a flow map is built ---
@@ -458,15 +462,18 @@ class NoFlowMap(Exception):
 class FlowProblem(NamedTuple):
     """A scene for which a map is made.
 
-    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony`
-    series in its own unit of time.
+    material, kappa, mu, j : numbers; the material is alpha, or a :class:`Prony` series in its own
+    unit of time.
     law : the kernels' record of the contact law of the material.
     slow_rate : rate at which ln V falls at low speeds, in units of gamma, > 0.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
     available.
     """
 
-    parameters: tuple[Any, ...]
+    material: Any
+    kappa: float
+    mu: float
+    j: float
     law: Any
     slow_rate: float
     threads: int | None
@@ -483,16 +490,9 @@ class FlowProblem(NamedTuple):
         """
         from ..kernels.motion.flow_layout import states
 
-        _, kappa, mu, _ = self.parameters
         out = np.empty((4, V.size))
-        states(
-            np.ascontiguousarray(V).ravel(),
-            np.ascontiguousarray(np.broadcast_to(delta, V.shape)).ravel(),
-            kappa,
-            mu,
-            self.law,
-            out,
-        )
+        delta = np.broadcast_to(delta, V.shape)
+        states(V.ravel(), delta.ravel(), self.kappa, self.mu, self.law, out)
         return out.reshape(4, *V.shape)
 
     def integrate(
@@ -519,9 +519,8 @@ class FlowProblem(NamedTuple):
             np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()
         ):
             raise NoFlowMap(OUT_OF_RANGE)
-        starts = V, V * (1.0 + delta)
         (V, _, _, _, delta, regime, *_), _ = integrate_motions(
-            self.parameters, starts, gamma, t, threads=self.threads
+            self[:4], (V, V * (1.0 + delta)), gamma, t, threads=self.threads
         )
         if not ((regime == PARTIAL_SLIP) & (V > 0.0)).all():
             raise NoFlowMap(reason)

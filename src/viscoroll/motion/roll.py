@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +14,6 @@ from ..contact_mechanics import Roller, Validity, assess_heat, scale_of, warn_of
 from ..contact_mechanics.contact import contact
 from ..contact_mechanics.validity import validity
 from ..core import (
-    UNITLESS_TYPES,
     ArrayLike,
     Dataset,
     Feedback,
@@ -31,7 +30,7 @@ from ..core import (
     digits_beside,
 )
 from .motion_arguments import ROWS, SPEED_RANGE, Drive, output_times, strip_units
-from .motion_datasets import RollResult, Switch, describe_load, describe_values
+from .motion_datasets import RollResult, Switch, describe_load, describe_values, motion_dataset
 from .motion_problem import NO_NOTES, MotionProblem, SolverOptions, integrate_single, make_problem
 
 #: Changes of regime that are kept.
@@ -89,7 +88,7 @@ class Motion(RollResult):
     """
 
     reversals: Floats
-    _problem: MotionProblem = field(repr=False)
+    _problem: MotionProblem
 
     @property
     def message(self) -> str:
@@ -135,8 +134,10 @@ class Motion(RollResult):
         # A last step that is cut at this end may take more steps than one that was not.
         limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
         for reached in times[::-1].tolist():
-            problem = self._problem._replace(end=reached, limits=limits)
-            last = integrate_motion(problem, np.array([reached * self.scale["t"]]))
+            last = integrate_motion(
+                self._problem._replace(end=reached, limits=limits),
+                np.array([reached * self.scale["t"]]),
+            )
             if np.isfinite(last.V[0]):
                 break
         return last
@@ -188,11 +189,10 @@ class Motion(RollResult):
         """
         reached = self.regime >= 0
         V = self.V[reached]
-        delta = self.delta[reached]
         # a finite creepage far beyond every onset of full slip, as contact() refuses infinity
-        delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
-        slowest = -SPEED_RANGE[0] * self.scale["V"]
-        V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
+        delta = np.clip(self.delta[reached], -1e300, 1e300)
+        # -0: the limit from below
+        V = np.where((V == 0.0) & np.signbit(V), -SPEED_RANGE[0] * self.scale["V"], V)
         found = contact(self.roller, V, delta=delta, fields=fields, **options)
         whole = {}
         for name, values in found.as_dict().items():
@@ -236,7 +236,6 @@ class Motion(RollResult):
         outputs = self.t[self.regime >= 0]
         whole = self.at(np.union1d(self.course.t, outputs)) if outputs.size else self
         reached = whole.regime >= 0
-        t = whole.t[reached]
         V = whole.V[reached]
         omega = whole.omega[reached]
         # for each state the index of the last state up to it that moves
@@ -255,10 +254,11 @@ class Motion(RollResult):
             return report
         if self.scene.cover is None:
             rolls = whole.regime[reached] > 0
-            x = whole.x[reached]
-            report = self._add_steadiness(report, self.roller, V=V, rolls=rolls, x=x, ends=False)
+            report = self._add_steadiness(
+                report, self.roller, V, rolls, whole.x[reached], ends=False
+            )
         # each output time ends a part, whose worst state counts
-        last = np.searchsorted(t, outputs)
+        last = np.searchsorted(whole.t[reached], outputs)
         return Validity(
             *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
         )
@@ -280,8 +280,9 @@ class Motion(RollResult):
             title = f"prescribed {name}" if name in ("V", "omega") else name
             rows.append(SummaryRow(title, describe_load(given, self._unit(name))))
         if not np.isnan(self.onset_time):
-            onset = f"t = {self.onset_time:.6g}"
-            rows.append(SummaryRow("onset of partial slip", onset, self._unit("t")))
+            rows.append(
+                SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t"))
+            )
         if self.switches:
             last = self.switches[-1]
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
@@ -291,8 +292,8 @@ class Motion(RollResult):
             rows.append(SummaryRow("changes of regime", changes))
         if self.reversals.size:
             rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
-        ended = f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})"
-        return "Motion", [*rows, SummaryRow("ended", ended)]
+        steps = f"{self.steps} step{'s' * (self.steps != 1)}"
+        return "Motion", [*rows, SummaryRow("ended", f"{self.message} ({steps})")]
 
     def at(self, t: ArrayLike) -> Motion:
         """Return the same motion at other times within [0, end], by the dense output of the steps.
@@ -339,9 +340,7 @@ class Motion(RollResult):
         """
         ends = self._step_ends
         end = self._problem.end
-        return self.at(
-            np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"]
-        )
+        return self.at(np.union1d(ends[ends < end], [0.0, end]) * self.scale["t"])
 
     def _figure(self) -> Figure:
         """Return the figure of the motion at its output times; where only one was requested, at the
@@ -373,8 +372,6 @@ class Motion(RollResult):
         >>> motion.to_xarray()["V"].attrs["units"]
         'm s-1'
         """
-        from .motion_datasets import motion_dataset
-
         return motion_dataset(self)
 
 
@@ -394,11 +391,8 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     scale = problem.roller.scale
     end = problem.end
     T = scale["t"]
-    t = np.minimum(times / scale["t"], end)
-    if t[-1] != end:
-        t = np.append(t, end)
-    noted = np.empty((_SWITCHES_KEPT, 2))
-    noted.fill(np.nan)
+    t = np.append(np.minimum(times / T, end), end)
+    noted = np.full((_SWITCHES_KEPT, 2), np.nan)
     out, (status, steps, _, onset_time, rest_time) = integrate_single(
         problem, t, noted, NO_NOTES[1]
     )
@@ -564,23 +558,25 @@ def roll(
     """
     units = scale_of(roller)
     times = output_times(t, units)
-    drive = Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V)
-    # plain floats, the common case, need no search for units
-    if not UNITLESS_TYPES.issuperset(map(type, (V0, omega0, *drive))):
-        (V0, omega0), drive, _ = strip_units((V0, omega0), drive, units)
-    options = SolverOptions(
-        rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
+    start, drive, _ = strip_units(
+        (V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units
     )
     problem = make_problem(
-        roller, (V0, omega0), drive=drive, end=times[-1], options=options, single=True
+        roller,
+        start,
+        drive,
+        times[-1],
+        SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested),
+        single=True,
     )
-    problem.warn_of_start((V0, omega0))
+    problem.warn_of_start(start)
     motion = integrate_motion(problem, times)
-    warn_of_speeds(problem.roller, V0, motion.V)
+    warn_of_speeds(problem.roller, start[0], motion.V)
     if not motion.success:
-        text = (
+        warnings.warn(
             f"roll: {motion.status.message}; outputs not reached are NaN, and the message of the "
-            "motion gives the last state"
+            "motion gives the last state",
+            RuntimeWarning,
+            stacklevel=2,
         )
-        warnings.warn(text, RuntimeWarning, stacklevel=2)
     return motion

@@ -15,6 +15,7 @@ quantile of blocks lies between two values that are known to 2^-8 each
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
@@ -23,7 +24,7 @@ import numpy as np
 
 from ..core import Dataset, Floats, Integers, MotionStatus, NDArray, ParameterError
 from .motion_arguments import ROWS
-from .motion_datasets import column_attributes, provenance
+from .motion_datasets import Variables, column_attributes, provenance
 
 # --- Counts and moments of one quantity, which merge with those of further values ---
 
@@ -94,10 +95,14 @@ class Histogram(msgspec.Struct):
         distance = other.mean - self.mean
         mean = self.mean + distance * (other.count / count)
         between = distance * distance * (self.count * (other.count / count))
-        spread = self.spread + other.spread + between
-        extremes = min(self.low, other.low), max(self.high, other.high)
         return Histogram(
-            bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes
+            bins,
+            self.counts_in(bins) + other.counts_in(bins),
+            count,
+            mean,
+            self.spread + other.spread + between,
+            min(self.low, other.low),
+            max(self.high, other.high),
         )
 
     def counts_in(self, bins: NDArray[np.int32]) -> Integers:
@@ -179,8 +184,8 @@ class Quantity(NamedTuple):
 
     fields: tuple[str, ...] = ()
     of: Callable[..., NDArray] = np.positive
-    column: str = ""
     part: str = ""
+    column: str = ""
 
     @property
     def over_time(self) -> bool:
@@ -196,15 +201,15 @@ class Quantity(NamedTuple):
         k: index of the output time, ignored without ``over_time``.
         """
         if not self.fields:
-            return getattr(motions, self.column)
-        found = [getattr(motions, name)[:, k] for name in self.fields]
+            return motions[self.column]
+        found = [motions[name][:, k] for name in self.fields]
         if not self.part:
             return self.of(*found)
         scale = motions.scale
         j = motions.scene.j
         # twice the kinetic energy at the start divided by m (R/T_ref)^2
         whole = (motions.V0 / scale["V"]) ** 2 + j * (motions.omega0 / scale["omega"]) ** 2
-        found = [values / scale[name] for name, values in zip(self.fields, found, strict=True)]
+        found = [values / scale[name] for name, values in zip(self.fields, found)]
         return self.of(np.where(whole > 0.0, whole, np.nan), j, *found)
 
     def about(self, si: bool) -> dict[str, Any]:
@@ -228,17 +233,15 @@ def _loss(whole: NDArray, j: Any, loss: NDArray) -> NDArray:
 QUANTITIES = {
     **{name: Quantity((name,), column=name) for name in ROWS if name != "regime"},
     "distance": Quantity(("x",), np.abs, column="x"),
-    "translation": Quantity(("V",), lambda whole, j, V: V**2 / whole, part="in translation"),
-    "rotation": Quantity(
-        ("omega",), lambda whole, j, omega: j * omega**2 / whole, part="in rotation"
-    ),
+    "translation": Quantity(("V",), lambda whole, j, V: V**2 / whole, "in translation"),
+    "rotation": Quantity(("omega",), lambda whole, j, omega: j * omega**2 / whole, "in rotation"),
     "lost": Quantity(
         ("V", "omega"),
         lambda whole, j, V, omega: 1.0 - V**2 / whole - j * omega**2 / whole,
-        part="lost to slip and rolling resistance",
+        "lost to slip and rolling resistance",
     ),
-    "lost_to_slip": Quantity(("slip_loss",), _loss, part="lost in slip"),
-    "lost_to_rolling": Quantity(("rolling_loss",), _loss, part="lost in rolling"),
+    "lost_to_slip": Quantity(("slip_loss",), _loss, "lost in slip"),
+    "lost_to_rolling": Quantity(("rolling_loss",), _loss, "lost in rolling"),
     "onset_time": Quantity(column="onset_time"),
     "rest_time": Quantity(column="rest_time"),
 }
@@ -275,13 +278,10 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> Dataset:
     names = [
         name
         for name, quantity in QUANTITIES.items()
-        if not quantity.part
-        and all(getattr(motions, field) is not None for field in quantity.fields)
+        if not quantity.part and all(motions[field] is not None for field in quantity.fields)
     ]
-    dataset = summary_dataset(
-        summarise(motions, names, exact=True), motions.t, levels, motions.scale.si
-    )
-    return dataset.assign_attrs(
+    summary = summarise(motions, names, exact=True)
+    return summary_dataset(summary, motions.t, levels, motions.scale.si).assign_attrs(
         provenance("Summary of an ensemble of motions"), motions=len(motions)
     )
 
@@ -301,17 +301,19 @@ def drawn_summary(ensemble: Dataset) -> Dataset:
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)
-    dataset = summary_dataset(summary, ensemble["t"].values, LEVELS, si="R" in ensemble.attrs)
+    dataset = summary_dataset(summary, ensemble["t"].values, LEVELS, "R" in ensemble.attrs)
     for name in names:  # values that differ by less than a bin of the summary
         last: Any = summary.histograms[name][-1]
         # fewer different edges: values too near each other for even bins, or NaN without values
         edges = np.unique(np.linspace(last.low, last.high, _MOST_BARS + 1))
         if edges.size == _MOST_BARS + 1:
-            counts = np.histogram(last.values, edges)[0]
             bin_ = f"{name}_bin"
-            parts = {"bin_low": edges[:-1], "bin_high": edges[1:], "histogram": counts}
             dataset = dataset.drop_dims(bin_).assign(
-                {f"{name}_{part}": (bin_, x) for part, x in parts.items()}
+                {
+                    f"{bin_}_low": (bin_, edges[:-1]),
+                    f"{bin_}_high": (bin_, edges[1:]),
+                    f"{name}_histogram": (bin_, np.histogram(last.values, edges)[0]),
+                }
             )
     return dataset.assign_attrs(motions=ensemble.sizes["motion"])
 
@@ -332,14 +334,12 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
     histograms = {}
     for name in names:
         quantity = QUANTITIES[name]
-        times = range(motions.t.size if quantity.over_time else 1)
         histograms[name] = [
-            Histogram.of(np.asarray(quantity.values(motions, k)), exact) for k in times
+            Histogram.of(np.asarray(quantity.values(motions, k)), exact)
+            for k in range(motions.t.size if quantity.over_time else 1)
         ]
-    codes, counts = np.unique(motions.status, return_counts=True)
-    return Summary(
-        histograms, dict(zip(codes.tolist(), counts.tolist(), strict=True)), int(motions.flow.sum())
-    )
+    statuses = Counter(np.asarray(motions.status).tolist())
+    return Summary(histograms, dict(sorted(statuses.items())), int(motions.flow.sum()))
 
 
 def merge_summaries(summaries: Iterator[Summary]) -> Summary:
@@ -357,8 +357,7 @@ def merge_summaries(summaries: Iterator[Summary]) -> Summary:
         for name, histograms in total.histograms.items():
             pairs = zip(histograms, other.histograms[name], strict=True)
             total.histograms[name] = [first.merge(second) for first, second in pairs]
-        for code, count in other.statuses.items():
-            total.statuses[code] = total.statuses.get(code, 0) + count
+        total.statuses = dict(Counter(total.statuses) + Counter(other.statuses))
         total.mapped += other.mapped
     return total
 
@@ -379,19 +378,18 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
     """
     import xarray as xr
 
-    data: dict[str, Any] = {}
+    data: Variables = {}
     for name, histograms in total.histograms.items():
         data |= _variables(name, histograms, levels, si)
-    codes = np.array([int(code) for code in MotionStatus], np.int8)
-    ended = column_attributes("status") | {
-        "long_name": "number of motions with each status",
-        "units": "1",
-        "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
-    }
     data["ended"] = (
         "status",
-        np.array([total.statuses.get(code, 0) for code in codes.tolist()]),
-        ended,
+        np.array([total.statuses.get(code, 0) for code in MotionStatus]),
+        column_attributes("status")
+        | {
+            "long_name": "number of motions with each status",
+            "units": "1",
+            "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
+        },
     )
     coords = {
         "t": ("t", t, column_attributes("t", si)),
@@ -400,7 +398,11 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
             np.array(levels),
             {"long_name": "share of motions below", "units": "1"},
         ),
-        "status": ("status", codes, {"long_name": "code of MotionStatus"}),
+        "status": (
+            "status",
+            np.array([*MotionStatus], np.int8),
+            {"long_name": "code of MotionStatus"},
+        ),
     }
     failed = sum(n for code, n in total.statuses.items() if code > MotionStatus.RESTED)
     return xr.Dataset(
@@ -410,7 +412,7 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
 
 def _variables(
     name: str, histograms: list[Histogram], levels: tuple[float, ...], si: bool
-) -> dict[str, Any]:
+) -> Variables:
     """Return the variables of one quantity: moments, quantiles, and counts in all bins that hold a
     value at some time.
 
@@ -428,9 +430,9 @@ def _variables(
     about = QUANTITIES[name].about(si)
     times = ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))
-    counted, mean, spread, low, high = np.array(
+    counted, mean, spread, low, high = np.transpose(
         [[one.count, one.mean, one.spread, one.low, one.high] for one in histograms]
-    ).T
+    )
     below, above = edges_of(bins)
     in_bins = f"{name}_bin"
     parts = {
@@ -441,12 +443,12 @@ def _variables(
         "max": (times, high, "largest value"),
         "quantiles": (
             ("quantile", *times),
-            np.array([one.quantiles(levels) for one in histograms]).T,
+            np.transpose([one.quantiles(levels) for one in histograms]),
             "quantiles",
         ),
         "histogram": (
             (in_bins, *times),
-            np.array([one.counts_in(bins) for one in histograms]).T,
+            np.transpose([one.counts_in(bins) for one in histograms]),
             "motions a bin",
         ),
         "bin_low": ((in_bins,), below, "lower edge of a bin"),
