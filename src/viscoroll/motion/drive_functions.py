@@ -356,7 +356,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
             when,
             motion=n,
         )
-    terms = np.ascontiguousarray(polyder(speed.terms, axis=-1))
+    terms = np.ascontiguousarray(polyder(speed.terms, axis=-1), np.float64)
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 
