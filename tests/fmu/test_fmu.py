@@ -214,7 +214,7 @@ def test_a_cover_rolls_by_its_law_on_disk(tmp_path):
     path = str(tmp_path / "roller.fmu")
     with pytest.warns(vr.ModelWarning, match="has the fast law.*Dundurs' constant is"):
         fmu.build(unlike.replace(material=dataclasses.replace(RUBBER, nu=0.3), coupled=True), path)
-    with pytest.warns(vr.ModelWarning, match="has the fast law.*states its error"):
+    with pytest.warns(vr.ModelWarning, match="has the fast law.*states the error"):
         fmu.build(vr.load_law(tmp_path / "law.nc"), path)
     own = {"R": unlike.R, "load": unlike.load}
     with Instance(path, "CoSimulation", v0=1.0) as roller:

@@ -155,8 +155,7 @@ class DriveFunctions:
         # the pull of the slope, over the load P cos(slope), adds to the constant term of the force
         terms = force.terms + np.zeros_like(slope.terms)
         terms[..., :1] += slope.terms
-        # without a prescribed speed its name is "", and its rate too is the function that is 0
-        rate = differentiate(name, speed)
+        rate = differentiate(name, speed) if name else _NOTHING
         return pack_pieces((force._replace(terms=terms), torque, rate, brake, speed), self.end)
 
     def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
