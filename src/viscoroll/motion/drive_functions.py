@@ -215,7 +215,7 @@ def prepare_drive(
     or (n,); a prescribed one has its value at t = 0.  The functions are :data:`UNDRIVEN` where the
     drive is empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
-    if not drive.given:
+    if not drive.acts:
         return UNDRIVEN, *start_speeds(V0, omega0)
     tangent = slope_tan_cos(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
@@ -356,7 +356,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
             when,
             motion=n,
         )
-    terms = np.ascontiguousarray(polyder(speed.terms, axis=-1))
+    terms: Any = np.ascontiguousarray(polyder(speed.terms, axis=-1))
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 

@@ -39,7 +39,7 @@ from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integra
 
 #: (material, kappa, mu, j), numbers, on which a map depends; the material is alpha, or a
 #: :class:`Prony` series in its own unit of time
-MapParameters = tuple[Any, ...]
+MapParameters = tuple[Any, float, float, float]
 #: maps kept; the one that was used longest ago goes first
 KEPT = 64
 
@@ -408,7 +408,7 @@ def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
         Returns a :class:`FlowResult` of one motion with the rows V, omega, x, angle, slip_loss,
         rolling_loss.
         """
-        return look_up_ensemble(new_map, Motions(1.0, 0.0, *start, times, _MEASURED_ROWS))
+        return look_up_ensemble(new_map, Motions(1.0, 0.0, V0, omega0, times, _MEASURED_ROWS))
 
     # 800 decay times: V has fallen below the smallest double
     at_rest = flow(np.array([0.0, 800.0 * decay]))
