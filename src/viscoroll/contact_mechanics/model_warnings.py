@@ -12,6 +12,7 @@ from bisect import bisect
 from collections.abc import Collection
 from dataclasses import replace
 from functools import lru_cache
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -72,6 +73,8 @@ _SOFT = (
 _EXAMINED = 256
 #: Data of materials for which this process has warned already.
 _warned_records: set[Measured] = set()
+#: Takes the numbers of a scene.
+_numbers_of = attrgetter(*PARAMETERS)
 
 
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
@@ -243,7 +246,7 @@ def warn_of_start(
         V, omega = (0.0 if speed is None else np.abs(speed) for speed in start)
         if np.max(np.maximum(V, omega * data.R), initial=0.0) > data.wave_speed:
             _warn_of_faults([_FASTER_THAN_WAVES], "motion", "validity() of cylinder or result")
-    numbers = [*(getattr(scene, name) for name in PARAMETERS), V0, omega0]
+    numbers = [*_numbers_of(scene), V0, omega0]
     if type(V0) is type(omega0) is float and not scene.shape:
         faults = _start_faults(scene.material, driven, *numbers)
     else:

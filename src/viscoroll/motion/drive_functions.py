@@ -48,6 +48,8 @@ _BESIDE = (
 )
 #: The function of time that is 0.
 _NOTHING = Piecewise(np.zeros((1, 1)), np.zeros((1, 1, 1)))
+#: A load of 0 that follows no speed.
+_NO_GAINS = Feedback(0.0)
 #: Code in the kernels of the prescribed speed, by its name; "" for none.
 _PRESCRIBED_CODES = {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}
 
@@ -155,7 +157,8 @@ class DriveFunctions:
         # the pull of the slope, over the load P cos(slope), adds to the constant term of the force
         terms = force.terms + np.zeros_like(slope.terms)
         terms[..., :1] += slope.terms
-        rate = differentiate(name, speed) if name else _NOTHING
+        # without a prescribed speed its name is "", and both are the function that is 0
+        rate = differentiate(name, speed) if name else speed
         return pack_pieces((force._replace(terms=terms), torque, rate, brake, speed), self.end)
 
     def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
@@ -214,7 +217,7 @@ def prepare_drive(
     or (n,); a prescribed one has its value at t = 0.  The functions are :data:`UNDRIVEN` where the
     drive is empty, in which case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
-    if not drive.given:
+    if not drive.acts:
         return UNDRIVEN, *start_speeds(V0, omega0)
     tangent = slope_tan_cos(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
@@ -306,8 +309,7 @@ def _gains(drive: Drive) -> Floats:
     nothing is given.
     """
     force, torque = (
-        load if isinstance(load, Feedback) else Feedback(0.0)
-        for load in (drive.force, drive.torque)
+        load if isinstance(load, Feedback) else _NO_GAINS for load in (drive.force, drive.torque)
     )
     gains = {
         "gain of force on V": force.V,
@@ -355,7 +357,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
             when,
             motion=n,
         )
-    terms = np.ascontiguousarray(polyder(speed.terms, axis=-1), np.float64)
+    terms: Any = np.ascontiguousarray(polyder(speed.terms, axis=-1))
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 
@@ -451,6 +453,8 @@ def _restrict(function: Piecewise, starts: Floats, ends: Floats) -> Floats:
     terms = np.take_along_axis(function.terms, piece[..., None], 1)
     # a piece that is not cut keeps its terms to the bit; the one without end is constant
     cut = np.isfinite(last) & ((first != starts) | (last != ends))
+    if not cut.any():
+        return _start_at_zero(terms)
     cut = np.broadcast_to(cut, terms.shape[:2])
     first, last, starts, ends = (
         np.broadcast_to(times, cut.shape)[cut] for times in (first, last, starts, ends)

@@ -452,7 +452,7 @@ def ensemble(
         inputs,
         np.broadcast_to(problem.immobile, (count,)),
         times / scale["t"],
-        tuple(name for name in names if problem.drive.given or name not in ACTING),
+        names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
         thread_count(threads),
         "motions" if check_bool("progress", progress) else None,
     )

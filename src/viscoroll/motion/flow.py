@@ -39,7 +39,7 @@ from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integra
 
 #: (material, kappa, mu, j), numbers, on which a map depends; the material is alpha, or a
 #: :class:`Prony` series in its own unit of time
-MapParameters = tuple[Any, Any, Any, Any]
+MapParameters = tuple[Any, float, float, float]
 #: maps kept; the one that was used longest ago goes first
 KEPT = 64
 

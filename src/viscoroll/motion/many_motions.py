@@ -26,7 +26,7 @@ from ..laws import record_of_alphas, record_of_materials
 from ..laws.law_table import law_table
 from ..materials import Bodies
 from .flow import FlowResult, flow_map, look_up_ensemble
-from .motion_arguments import LOSSES, SPEED_RANGE, STATES, dimensionless_error
+from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES, dimensionless_error
 from .motion_problem import MotionProblem, integrate
 
 #: Motions in a block of work where all are integrated: some hundredths of a second.
@@ -190,6 +190,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
     result.
     """
     problem = batch.problem
+    rows = np.array([ROWS.index(name) for name in batch.rows], np.int64)
     steps = np.zeros(batch.immobile.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -212,7 +213,7 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
             problem.functions.for_kernel(left),
             batch.times,
             problem.limits,
-            batch.rows,
+            rows,
         )
         (
             found.status[left],

@@ -4,7 +4,6 @@ gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from ..core import (
     DIMENSIONLESS,
+    UNITLESS_TYPES,
     ArrayLike,
     Feedback,
     Floats,
@@ -73,6 +73,8 @@ def require_single(**arguments: Any) -> None:
     returned.
     """
     for name, value in arguments.items():
+        if type(value) is float:
+            continue
         try:
             shape = tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
         except (TypeError, ValueError):
@@ -96,9 +98,8 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     of |V0| and |omega0| of each motion is 0 or at least 1e-300, and the shapes broadcast.
     """
     low, high = SPEED_RANGE
-    # max() of a number and a NaN after it is the number
-    if type(V0) is type(omega0) is float and not math.isnan(omega0):
-        if low <= max(abs(V0), abs(omega0)) <= high:
+    if type(V0) is type(omega0) is float and -high <= V0 <= high and -high <= omega0 <= high:
+        if abs(V0) >= low or abs(omega0) >= low:
             return V0, omega0
     V = check_array("V0", V0)
     omega = check_array("omega0", omega0)
@@ -228,6 +229,11 @@ class Drive(NamedTuple):
             if not (callable(x) or isinstance(x, Schedule))
         }
 
+    @property
+    def acts(self) -> bool:
+        """Whether anything is given; every call of roll asks, so no dict is made."""
+        return {*map(type, self)} != {type(None)}
+
     def without_zeros(self) -> Drive:
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times;
         prescribed speeds of 0 stay.
@@ -279,5 +285,8 @@ def strip_units(
     which results are labelled again, None without), in the units of the roller.  What had neither a
     unit nor labels is unchanged, and callables are.  Numbers are not checked otherwise.
     """
+    # the common case, which needs no names
+    if UNITLESS_TYPES.issuperset(map(type, (*start, *drive))):
+        return start, drive, None
     plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels

@@ -24,6 +24,7 @@ from ..contact_mechanics import (
 from ..contact_mechanics.contact import contact
 from ..core import (
     Floats,
+    Integers,
     MotionStatus,
     NDArray,
     ParameterError,
@@ -48,8 +49,10 @@ from .motion_arguments import (
     with_scales,
 )
 
-#: Quantities of free motions, rows of the kernel's output.
-_FREE_ROWS = STATES + LOSSES
+#: Indices of all rows of the kernel's output.
+_ALL_ROWS = np.arange(len(ROWS))
+#: Indices of the rows of free motions.
+_FREE_ROWS = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
 #: (rtol, threshold of rest, step limit) of the motions of a flow map: as accurate as the integrator
 #: is, where alpha = 1e10 takes tens of thousands of steps.
 _MAP_LIMITS = (1e-12, 0.0, 100_000)
@@ -148,9 +151,10 @@ def make_problem(
     left out, the start speeds are reduced by the cost of a standstill, and the step limit is raised
     by the number of corners of the drive; nothing is integrated.
     """
+    acts = drive.acts
     if single:
-        require_single(V0=start[0], omega0=start[1], **drive.numbers)
-    drive = drive.without_zeros()
+        require_single(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
+    drive = drive.without_zeros() if acts else drive
     rtol, rest, max_steps, resolve, unsteady, rested = options
     roller, scene, scale = resolve_model(
         roller, "roll" if single else "ensemble", moves=True, slope=drive.slope
@@ -166,7 +170,7 @@ def make_problem(
             f"rest = {rest!r:.60} is one threshold in m/s for all motions, but R or T_ref "
             "(T_epsilon) differs between them: leave rest out, or give all one R and one T_ref",
         )
-    unsteady = _check_unsteady(unsteady, scene)
+    unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     if (last := float(end) / scale["t"]) == math.inf:
         longest = sys.float_info.max * min(scale["t"], 1.0)
         raise ParameterError("t", end, f"less than {longest:.3g}")
@@ -189,10 +193,10 @@ def make_problem(
     try:
         V0 = make_dimensionless("V0", start[0], scale)
         omega0 = make_dimensionless("omega0", start[1], scale)
-        loads = {name: make_dimensionless(name, x, scale) for name, x in drive.given.items()}
-        functions, V0, omega0 = prepare_drive(
-            Drive(**loads), V0, omega0, last, rtol, resolve=resolve
-        )
+        loads = drive
+        if acts and scale.si:
+            loads = Drive(*map(make_dimensionless, Drive._fields, drive, (scale,) * len(drive)))
+        functions, V0, omega0 = prepare_drive(loads, V0, omega0, last, rtol, resolve=resolve)
         V0, omega0, immobile = _apply_standstill(
             V0, omega0, functions.prescribed, scene, rested, scale
         )
@@ -207,7 +211,7 @@ def make_problem(
             "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
             "time at which a brake stops the cylinder)",
         )
-    if single:
+    if single and functions is not UNDRIVEN:
         many = {
             name: f.terms[:, 0, 0] for name, f in functions.functions.items() if len(f.terms) > 1
         }
@@ -226,7 +230,7 @@ def make_problem(
         # a step ends at every corner
         (rtol, threshold, max_steps + functions.corners),
         unsteady,
-        driven=unsteady or bool(drive.given),
+        driven=unsteady or functions is not UNDRIVEN,
     )
 
 
@@ -313,7 +317,7 @@ def integrate(
     drive: KernelDrive,
     times: Floats,
     limits: tuple[float, float, int],
-    rows: tuple[str, ...],
+    rows: Integers,
     notes: tuple[NDArray, ...] = NO_NOTES,
 ) -> tuple[Floats, Floats]:
     """Integrate motions in the kernel.
@@ -325,7 +329,7 @@ def integrate(
     drive: drive of the motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
     times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
     limits: (rtol; threshold of rest, 0 for none; largest number of steps).
-    rows: names of the quantities to compute, out of :data:`.motion_arguments.ROWS`.
+    rows: (rows,), int, indices into :data:`.motion_arguments.ROWS`: the quantities to compute.
     notes: (switches, (k, 2): time in T_ref and new regime, or -1 where V changes its sign; ends of
     steps, (l,), in T_ref). Both are written from the front in the order of time; what exceeds their
     length is left out, and entries that are not needed stay as they were.  Each motion overwrites
@@ -340,8 +344,7 @@ def integrate(
 
     out = np.empty((len(rows), count, times.size))
     info = np.empty((count, N_INFO_COLUMNS))
-    row_indices = np.array([ROWS.index(name) for name in rows], np.int64)
-    motion_loop(batch, drive, times, limits, row_indices, out, info, notes)
+    motion_loop(batch, drive, times, limits, rows, out, info, notes)
     return out, info
 
 
@@ -383,7 +386,7 @@ def integrate_single(
         problem.functions.for_kernel(),
         times,
         problem.limits,
-        ROWS,
+        _ALL_ROWS,
         notes,
     )
     if law.coupled is not None:

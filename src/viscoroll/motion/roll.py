@@ -391,7 +391,9 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     scale = problem.roller.scale
     end = problem.end
     T = scale["t"]
-    t = np.append(np.minimum(times / T, end), end)
+    t = np.minimum(times / T, end)
+    if t[-1] != end:
+        t = np.append(t, end)
     noted = np.full((_SWITCHES_KEPT, 2), np.nan)
     out, (status, steps, _, onset_time, rest_time) = integrate_single(
         problem, t, noted, NO_NOTES[1]
