@@ -530,11 +530,12 @@ def law(roller: Roller | LawGrid) -> Law:
 
     Notes
     -----
-    For numbers the bits of Q and M are those of :func:`contact`, of a Scene also those of the
-    slopes; those of a Cylinder agree to two units in the last place.  For arrays :func:`contact` is
-    called (``tests/test_bound_law.py``).  At rest, V = omega = 0, dQ_domega is infinite and dQ_dV
-    is -infinite.  Where full slip begins, Q has a corner in V only; the slopes there are those of
-    full slip, 0.  A call without slopes does not compute them.
+    For numbers the bits of Q, M and their slopes are those of :func:`contact`
+    (``tests/test_bound_law.py``); the slopes of a Cylinder, and its M by a table of the coupled
+    solution, agree to two units in the last place.  For arrays :func:`contact` is called.  At rest,
+    V = omega = 0, dQ_domega is infinite and dQ_dV is -infinite.  Where full slip begins, Q has a
+    corner in V only; the slopes there are those of full slip, 0.  A call without slopes does not
+    compute them.
 
     Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
 

@@ -494,10 +494,11 @@ def roll(
         ``V0`` is then left out (None) or its value at t = 0.
     rest : a speed, divided by R/T_ref or in m/s; None: none.  End the motion where max(|V|,
         R |omega|) falls below this once no force, torque, slope, brake, drag or prescribed speed
-        acts any more; refused where one of these acts to the end.  Nothing stops in finite time:
-        at small V the speed decays like exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an
-        elastic cylinder (alpha = 1) rolls for ever.  From there on V = omega = 0, and x and angle
-        stay; the omitted distance is close to (1 + j) V/(gamma c).
+        acts any more; refused where one of these acts to the end.  In partial slip a usual roller
+        (mu <= 2 kappa) does not stop in finite time: at small V the speed decays like
+        exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1)
+        rolls for ever.  Below this speed V = omega = 0 is taken, and x and angle stay; the omitted
+        distance is close to (1 + j) V/(gamma c).
     unsteady : in partial slip use M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N)
         V' = -gamma M where creepage is small.  The errors of V by the law of steady rolling become
         some five times smaller (docs/validity.md).  The motion ends where gamma N has risen to 1 +
