@@ -356,13 +356,14 @@ def test_the_header_of_C_is_the_contact(covered, tmp_path):
 @on_each
 def test_equilibria(scene):
     """Constant forces balance at what is found, others in test_steady.py; at rest they are the
-    limit of slow rolling.
+    limit of slow rolling; without loads there is none.
     """
     for force, torque in ((0.0, 0.004), (0.004, 0.0), (-0.197, 0.2)):
         s = scene.steady(force=force, torque=torque)
         c = scene.contact(s.V, omega=s.omega)
         known = [c.M_half_space - s.force, s.torque - c.M_cylinder, s.beta]
         assert close([c.Q, c.Q, c.beta], known, tol.COVER_STEADY, scale=1.0)
+    assert not scene.steady(force=[]).count.size
     still = free(scene, 0.0)
     still = scene.contact(0.0, delta=still.delta_0 - 0.4 * still.delta_star)
     force = still.M_half_space - still.Q

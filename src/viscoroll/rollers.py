@@ -333,7 +333,7 @@ class Cylinder(Methods):
         """Unit of dimensionless times, s, a float: T_epsilon (of an array the largest), or T_ref of
         the materials.
         """
-        if not self._sls_parameters:
+        if self.T_epsilon is None or not self._sls_parameters:
             return self.pair.T_ref
         # 1 s without cylinders
         return float(np.max(self.T_epsilon, initial=0.0)) or 1.0

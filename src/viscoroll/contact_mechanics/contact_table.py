@@ -382,7 +382,7 @@ def evaluate_law(
         # so that neighbours read the same numbers.  A record holds the law of one state at a time.
         laws: Any = (record,)
         order = _NO_ORDER
-        if isinstance(material, Prony | Bodies):
+        if not record and isinstance(material, Prony | Bodies):
             laws = (record_of_materials(material, alpha.astype(np.int64)),)
             if alpha.size > 1:
                 order = np.argsort(alpha, kind="stable")

@@ -428,14 +428,15 @@ class Parameters(Roller):
         True
         """
         cosine = slope_tan_cos(slope)[1]
-        thickness = getattr(self.cover, "thickness", None)
+        cover = self.cover
+        thickness = None if cover is None else cover.thickness
         broadcast_shape(slope=cosine, **self.numbers, thickness=thickness)
         changes = {
             "kappa": self.kappa / np.sqrt(cosine),
             "gamma": None if self.gamma is None else self.gamma * cosine,
         }
-        if self.cover is not None:  # its thickness is divided by the l0 of that load
-            changes["material"] = self.cover.of_thickness(thickness / np.sqrt(cosine))
+        if cover is not None:  # its thickness is divided by the l0 of that load
+            changes["material"] = cover.of_thickness(thickness / np.sqrt(cosine))
         return self.replace(**changes)
 
     @property

@@ -66,20 +66,15 @@ class Branches(NamedTuple):
     resistance : kappa (M - G V) at the nodes, (n,).
     extremum : whether a node is a local extremum of the curve, (n,).
     gain : G.
+    maximum : (largest value of the curve at a node, u of that node, of equal ones the first),
+        floats; without a gain that is the maximum of kappa M, for elastic bodies 0.
     """
 
     u: Floats
     resistance: Floats
     extremum: Booleans
     gain: float
-
-    @property
-    def maximum(self) -> tuple[float, float]:
-        """Return (largest value of the curve at a node, u of that node, of equal ones the first),
-        floats; without a gain that is the maximum of kappa M, for elastic bodies 0.
-        """
-        n = self.resistance.argmax()
-        return self.resistance[n], self.u[n]
+    maximum: tuple[float, float]
 
     def locate_loads(self, load: Floats) -> tuple[Integers, Integers]:
         """Locate the intervals between nodes in which the curve takes given values, as brackets for
@@ -97,7 +92,7 @@ class Branches(NamedTuple):
         indices = []
         nodes = []
         tolerance = EXTREMUM_RTOL * np.abs(load)
-        for first, last in pairwise([0, *np.flatnonzero(self.extremum), self.u.size - 1]):
+        for first, last in pairwise([0, *self.extremum.nonzero()[0], self.u.size - 1]):
             # searchsorted needs rising values: a falling branch is searched with the other sign
             rising = self.resistance[last] > self.resistance[first]
             sign = 1.0 if rising else -1.0
@@ -108,10 +103,10 @@ class Branches(NamedTuple):
                 inside &= np.abs(wanted - values[0]) > tolerance
             if self.extremum[last]:
                 inside |= np.abs(wanted - values[-1]) <= tolerance
-            index = np.flatnonzero(inside)
+            index = inside.nonzero()[0]
             above = values.searchsorted(wanted[index], "right" if rising else "left")
             indices.append(index)
-            nodes.append(first + np.clip(above - 1, 0, last - first - 1))
+            nodes.append(first + np.minimum(np.maximum(above - 1, 0), last - first - 1))
         return np.concatenate(indices), np.concatenate(nodes)
 
 
@@ -200,7 +195,9 @@ def branches(law: LawTable, gain: float) -> Branches:
     for at in flat:
         u = u[np.abs(u - at) > _SEPARATION * at]
     u = np.union1d(u, flat)
-    return Branches(u, _curve(law, gain, u)[0], extremum=np.isin(u, flat), gain=gain)
+    resistance = _curve(law, gain, u)[0]
+    n = resistance.argmax()
+    return Branches(u, resistance, np.isin(u, flat), gain=gain, maximum=(resistance[n], u[n]))
 
 
 def speed_nodes(law: LawTable) -> Floats:

@@ -464,14 +464,21 @@ def steady(
     given, labels = strip_labels(
         {"force": force, "torque": torque, "slope": slope, "V": V}, scale_of(roller)
     )
-    slope = given.pop("slope")
+    slope = given["slope"]
     on_slope, scene, scale = resolve_model(roller, "steady", slope=slope)
-    refuse_arrays(roller, scene, ("alpha",), slope=slope)
-    given = {name: make_dimensionless(name, value, scale) for name, value in given.items()}
-    loads = loads_of(scene, slope=slope, **given)
+    if type(scene.alpha) is not float:  # a float, the common case, is no array
+        refuse_arrays(roller, scene, ("alpha",), slope=slope)
+    loads = loads_of(
+        scene,
+        make_dimensionless("force", given["force"], scale),
+        torque=make_dimensionless("torque", given["torque"], scale),
+        slope=slope,
+        V=make_dimensionless("V", given["V"], scale),
+    )
     law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
-    gained = loads.gains.V or loads.gains.omega
+    gained_by_omega = loads.gains.omega
+    gained = loads.gains.V or gained_by_omega
     # without a load every speed of elastic bodies is steady
     neutral = law.elastic and loads.V is None and not gained
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
@@ -481,11 +488,11 @@ def steady(
         rolling = states_at(law, loads, moving, sign=np.sign(speed), V=np.abs(speed))
         rests = loads.V == 0.0
     else:
-        rolling = scan_states(law, loads) if loads.gains.omega else _states_under_load(law, loads)
+        rolling = scan_states(law, loads) if gained_by_omega else _states_under_load(law, loads)
         rests = is_balanced_at_rest(law, loads)
         if neutral:  # only where the friction does not suffice, which the result has to say
             rests &= np.abs(loads.torque) > loads.mu
-    resting = np.flatnonzero(rests)
+    resting = rests.nonzero()[0]  # in fewer calls than by flatnonzero
     if resting.size:
         rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
@@ -495,7 +502,7 @@ def steady(
     )
     reasons = Diagnosis(loads, scale, rolling, number=count, maximum=maximum, elastic=neutral)
     found = Steady(existing, reasons, labels)
-    warn_of_contact(on_slope, np.asarray(found.V))
+    warn_of_contact(on_slope, np.asarray(found.V) if labels else found.V)
     return found
 
 
@@ -520,10 +527,11 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
             f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude (l0 is the contact length at "
             "rest; in a scene R = load = 1, R/l0 = kappa)",
         )
-    if not loads.gains.V and law.elastic:
+    gain = loads.gains.V
+    if not gain and law.elastic:
         return States.none()
     if law.moment_of_speed_alone:
-        load, sign, u = find_crossings(law, loads.gains.V, total)
+        load, sign, u = find_crossings(law, gain, total)
         V = u / loads.kappa[load]
     else:
         load, sign, V = find_speeds(law, loads)

@@ -313,18 +313,16 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     """
     nodes = search_nodes(law)
     rounding = _rounding(law, loads)
-    parts = []
+    parts = [np.empty((3, 0))]
     for n, kappa in enumerate(loads.kappa):
         contacts = loads.contacts(law, n)
         for sign in (1.0, -1.0):
             left = partial(_torque_left_by_speed, contacts, loads, n, sign)
             zeros = find_zeros(left, nodes, rounding[n])
             # zeros are log2(kappa V)
-            parts.append(
-                (np.full(zeros.size, n), np.full(zeros.size, sign), np.exp2(zeros) / kappa)
-            )
-    load, signs, speeds = (np.concatenate(each) for each in zip(*parts))
-    return load, signs, speeds
+            parts.append(broadcast_rows((n, sign, np.exp2(zeros) / kappa), zeros.shape))
+    load, signs, speeds = np.hstack(parts)
+    return load.astype(np.int64), signs, speeds
 
 
 def _rounding(law: LawTable, loads: Loads) -> Floats:

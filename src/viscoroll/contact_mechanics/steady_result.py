@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import (
+    DIMENSIONS,
     Dataset,
     Floats,
     Integers,
@@ -323,12 +324,19 @@ class Steady(Equilibria):
         # those of _FIELDS, V to omega from the states, then those of the states from FAST on
         rows = [*fields, M_half_space + M_cylinder, grip, force, torque, *states.rows[Field.FAST :]]
         padded = pad(rows, count, loads.shape)
-        found = {name: each * append_axis(scale[name]) for name, each in zip(_FIELDS, padded)}
+        found = dict(zip(_FIELDS, padded))
+        for name in (found.keys() & DIMENSIONS.keys()) if scale.si else ():
+            unit = scale[name]
+            # in place of append_axis, whose calls take longer here than the rest
+            found[name] = found[name] * (unit[..., None] if isinstance(unit, np.ndarray) else unit)
         # the unit of all three, 1/s of a cylinder
         fast, slow, imaginary = padded[-5:-2] * append_axis(scale["rate_fast"])
+        eigenvalues = np.empty((*fast.shape, 2), complex)
+        eigenvalues[..., 0] = fast - 1j * imaginary
+        eigenvalues[..., 1] = slow + 1j * imaginary
         found |= {
             "stable": (fast < 0.0) & (slow < 0.0),
-            "eigenvalues": np.stack([fast - 1j * imaginary, slow + 1j * imaginary], axis=-1),
+            "eigenvalues": eigenvalues,
             "count": count.reshape(loads.shape) if loads.shape else int(count[0]),
         }
         super().__init__(found, labels, si=scale.si)
@@ -454,6 +462,8 @@ def pad(rows: Any, count: Integers, shape: tuple[int, ...]) -> Floats:
     Returns the fields, (fields, states..., equilibria).
     """
     most = int(count.max(initial=0))
-    padded = np.full((len(rows), count.size, most), np.nan)
-    padded[:, np.arange(most) < count[:, None]] = rows
-    return padded.reshape(len(rows), *shape, most)
+    found = np.asarray(rows)
+    if most * count.size > found.shape[1]:  # some have fewer
+        found = np.full((len(rows), count.size, most), np.nan)
+        found[:, np.arange(most) < count[:, None]] = rows
+    return found.reshape(len(rows), *shape, most)

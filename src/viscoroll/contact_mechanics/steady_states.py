@@ -243,7 +243,7 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         d_cylinder = d_cylinder - (on_spin - 1.0) * dQ_dV
         # slopes of Q over omega, and over V at fixed omega, times ``slow``
         b = dQ_ddelta / np.maximum(V, 1.0)
-        a = slow * dQ_dV - np.where(b != 0.0, b * (1.0 + delta), 0.0 * b)
+        a = slow * dQ_dV - np.multiply(b, 1.0 + delta, out=0.0 * b, where=b != 0.0)
         axis = on_axis * a + slow * (gains.force_V - d_half_space)
         det = on_spin * d_half_space + on_axis * d_cylinder
         det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
@@ -260,15 +260,15 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         spread -= np.ldexp(det * unit, -power) * np.ldexp(slow, -power)
         root = np.ldexp(np.sqrt(np.abs(spread)), power)
         larger = half + np.copysign(root, half)
-        other = np.where(larger != 0.0, det / larger, 0.0 * det)
+        other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
         real = spread >= 0.0
         larger = larger / unit / slow
         half = half / unit / slow
         root = root / unit / slow
         return np.array(
             [
-                np.where(real, np.minimum(larger, other), half),
-                np.where(real, np.maximum(larger, other), half),
+                np.minimum(larger, other, out=1.0 * half, where=real),
+                np.maximum(larger, other, out=1.0 * half, where=real),
                 np.where(real, 0.0, root),
             ]
         )
@@ -283,11 +283,14 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     Returns rows of :class:`Field` with slopes, (12, n).  In full slip Q is mu or -mu, and beta and
     the slopes of Q are 0.  beta is NaN of a grid, which does not contain it.
     """
-    rows = np.vstack([V, delta, contacts.fields(V, delta, *_ROWS)])
+    rows = np.empty((12, V.size))
+    rows[Field.V] = V
+    rows[Field.DELTA] = delta
+    rows[2:] = contacts.fields(V, delta, *_ROWS)
     if contacts.law.gridded:
         rows[Field.BETA] = np.nan
     speed = V
-    if (V < _LEAST_SPEED).any():
+    if np.minimum.reduce(V, initial=_LEAST_SPEED) < _LEAST_SPEED:
         speed = np.maximum(V, _LEAST_SPEED)
         rows[Field.DQ_DV :] = contacts.fields(speed, delta, *_ROWS[Field.DQ_DV - 2 :])
     # a slope over omega times V is one over the creepage
