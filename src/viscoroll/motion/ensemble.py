@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
@@ -131,10 +130,8 @@ class Ensemble(RollResult):
         >>> vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0).messages()
         {'reached the last output time': 2}
         """
-        return {
-            MotionStatus(code).message: count
-            for code, count in sorted(Counter(self.status.tolist()).items())
-        }
+        codes, counts = np.unique(self.status, return_counts=True)
+        return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts)}
 
     def summary(self, quantiles: Iterable[float] = LEVELS) -> Dataset:
         """Compute moments, quantiles and histograms over the motions, per output time, named as
@@ -525,15 +522,7 @@ def _in_units(batch: Batch, found: FlowResult) -> dict[str, Any]:
         for name in rows:
             # a unit for each motion is a column; in place, as the rows may fill the memory
             rows[name] *= np.reshape(scale[name], (-1, 1))
-    return (
-        rows
-        | {
-            name: np.broadcast_to(value * scale[name], found.status.shape)
-            for name, value in times.items()
-        }
-        | {
-            "status": found.status,
-            "switches": found.switches,
-            "drive_error": batch.problem.functions.error,
-        }
-    )
+        times = {name: value * scale[name] for name, value in times.items()}
+    times = {name: np.broadcast_to(value, found.status.shape) for name, value in times.items()}
+    notes = {"status": found.status, "switches": found.switches}
+    return rows | times | notes | {"drive_error": batch.problem.functions.error}

@@ -111,10 +111,12 @@ def solve_batch(
         found = _solve_by_flow_map(batch, speed, about)
     if found is None:
         found = FlowResult.empty(len(batch.rows), immobile.size, batch.times.size)
-    about["flow"] = (found.status >= 0) & ~immobile
-    found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
-    found.status[immobile] = MotionStatus.CAUGHT
-    found.switches[immobile] = 0
+    about["flow"] = found.status >= 0
+    if immobile.any():
+        about["flow"] &= ~immobile
+        found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
+        found.status[immobile] = MotionStatus.CAUGHT
+        found.switches[immobile] = 0
     about["steps"] = _integrate_others(found, batch)
     return found, about
 
@@ -142,7 +144,11 @@ def _solve_by_flow_map(
     rows = batch.rows
     rtol, threshold, _ = batch.problem.limits
     unit = scene.in_own_time()[1]
-    V0, omega0 = (batch.inputs[name] * unit for name in ("V0", "omega0"))
+    # many numbers: no copies where the unit of time is that of the scene
+    V0, omega0 = (
+        batch.inputs[name] if unit == 1.0 else batch.inputs[name] * unit
+        for name in ("V0", "omega0")
+    )
     if speed is None:
         speed = max(
             (abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0
@@ -173,6 +179,8 @@ def _solve_by_flow_map(
         tuple((STATES + LOSSES).index(name) for name in rows),
     )
     found = look_up_ensemble(chosen, motions, threads=batch.threads, progress=batch.progress)
+    if unit == 1.0:
+        return found
     for n, name in enumerate(rows):
         found.out[n] *= unit ** TIME_POWERS.get(name, 0)
     return found._replace(onset=found.onset * unit, rest=found.rest * unit)
