@@ -412,8 +412,8 @@ def build(arguments: Namespace) -> None:
     """Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
     The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
-    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.  Half-spaces
-    with Dundurs' constant above 0.05 are computed by the coupled solution, unless the file has coupled = false.
+    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.  Covers, and
+    half-spaces with Dundurs' constant above 0.05, are those of the coupled solution, unless the file has coupled = false.
 
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc

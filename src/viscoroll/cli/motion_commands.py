@@ -153,7 +153,7 @@ def stress(arguments: Namespace) -> None:
 def roll(arguments: Namespace) -> None:
     """Integrate one free motion from given initial speeds.
 
-    The motion may change between full slip and partial slip.  For half-spaces of one material it obeys Eq. (22) of the paper.
+    The motion may change between full slip and partial slip.  For half-spaces of one material Eq. (22) of the paper holds.
     For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
 
     example:
