@@ -176,7 +176,7 @@ def fit(arguments: Namespace) -> int:
     The command fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their
     headings, and prints how well the data determine it.  With -o it writes a [material] of a TOML file, or netCDF.
 
-    The exit code is 1 and no file is written if the misfit exceeds --misfit, or if it exceeds 5 % with any --misfit.
+    The exit code is 1 and no file is written if the misfit exceeds --misfit or 5 %.
     With --force the exit code is 0 and the file is written; the source of the data in it states the misfit.
 
     example:
@@ -414,8 +414,8 @@ def build(arguments: Namespace) -> None:
     """Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
     The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Formats: .nc, .cdf (without HDF5),
-    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.  Half-spaces
-    with Dundurs' constant above 0.05 are computed by the coupled solution, unless the file has coupled = false.
+    .csv, .txt (for Modelica) and .mat (MATLAB).  Axes are written as the numbers of `viscoroll contact`.  Covers, and
+    half-spaces with Dundurs' constant above 0.05, are those of the coupled solution, unless the file has coupled = false.
 
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
@@ -495,9 +495,9 @@ def validate(arguments: Namespace) -> int:
 
     A grid must be that of a scene with alpha.  The law of a cover is compared with solutions of the contact at no
     more than 400 speeds, a table of the coupled solution at no more than 80 states.  The exit code is 1 if an error is
-    larger than twice that stated (eight times for a cover or a table of the coupled solution; of what shear does in a
-    cover 1e-8 more), for a grid also if it is larger than half of the largest value, or if a node differs from the law
-    by more than 1e-12.
+    larger than its limit.  The limit is twice the stated error, and eight times the stated error for a cover or a table
+    of the coupled solution; for the functions of a cover that describe the effect of shear 1e-8 is added.  For a grid the
+    limit is at most half of the largest value, and a node must not differ from the law by more than 1e-12.
 
     example:
       viscoroll samples
@@ -567,7 +567,7 @@ def fmu(arguments: Namespace) -> None:
     For a cover, and for half-spaces with Dundurs' constant above 0.05, it is the fast law, as with coupled = false.
     Roller: inputs drive force and torque, outputs v, slip, omega, x; for co-simulation and model exchange.
     ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
-    Both provide directional derivatives, which are exact except over the load of a cover.
+    Both provide directional derivatives, which are exact except those with respect to the load of a cover.
 
     example:
       viscoroll samples

@@ -99,7 +99,8 @@ def contact(arguments: Namespace) -> None:
 def stress(arguments: Namespace) -> None:
     """Compute pressure and shear stress along the contact.
 
-    The stresses are given at 101 points, for one V and one delta (or omega); of a cover p alone.
+    The stresses are given at 101 points, for one V and one delta (or omega).  The output has the pressure p only for a
+    cover, and for half-spaces with Dundurs' constant above 0.05 unless the file has coupled = false.
 
     example:
       viscoroll stress paper-section-5 --V 0.5 --delta -0.01
@@ -117,7 +118,7 @@ def stress(arguments: Namespace) -> None:
     FileError for a file that cannot be read or written.
 
     The positions are equidistant and ascend in x: from the trailing to the leading end for V >= 0.
-    """
+    """  # noqa: E501
     import numpy as np
 
     roller = roller_of_argument(arguments.scene)
@@ -146,7 +147,7 @@ def stress(arguments: Namespace) -> None:
 def roll(arguments: Namespace) -> None:
     """Integrate one free motion from given initial speeds.
 
-    The motion obeys the equations of motion, Eq. (22) of the paper, and may change between full slip and partial slip.
+    The motion may change between full slip and partial slip.  For half-spaces of one material Eq. (22) of the paper holds.
     For driven, braked and unsteady motions use vr.roll in Python, or a run file (viscoroll ensemble).
 
     example:
@@ -269,7 +270,7 @@ def heat(arguments: Namespace) -> None:
     """Find the temperatures at which a cylinder runs.
 
     Each row is a temperature at which rolling loss and heat given off are equal; unstable ones lie between stable ones.
-    The file needs [cylinder], and the body that relaxes the key wlf or arrhenius; if both relax, they must be of one
+    The file needs [cylinder].  A body that relaxes needs the key wlf or arrhenius; if both relax, they must be of one
     material.  Options are numbers as in `viscoroll contact` (the slope of a cover: one number).
 
     example:
@@ -400,12 +401,12 @@ def ensemble(arguments: Namespace) -> None:
 def verify(arguments: Namespace) -> int:
     """Check every file of a results store against its checksum (SHA-256).
 
-    The exit code is 1 if a file differs or is missing (records/start: 2), or the run is unfinished.
+    The exit code is 1 if a file differs or is missing, or the run is unfinished; for the file records/start it is 2.
 
     arguments: parsed command line with store, path of the folder of the results.
     Returns that code, True for 1, also for a run that is not finished.
     Raises FileError for a folder that is no store, or where the record of its start is damaged.
-    """
+    """  # noqa: E501
     verdict = vr.runs.verify(arguments.store)
     print(f"{arguments.store}: {verdict}")
     return not verdict.ok  # True is exit code 1

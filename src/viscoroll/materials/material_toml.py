@@ -88,8 +88,8 @@ class MaterialSection(FileSection):
         C1 and C2 (in K) may be left out, they are then 17.44 and 51.6.
     arrhenius : time-temperature shift ln a_T = energy/(8.314 J/(mol K)) (1/T - 1/T0), with absolute
         temperatures in the formula; in the file T0 is in degrees Celsius, energy in J/mol.
-    vertical_shift : "entropic": the moduli are multiplied by the absolute temperature divided by
-        that of ``reference``.
+    vertical_shift : "entropic": the moduli are multiplied by the absolute temperature of the
+        material, divided by the absolute temperature of ``reference``.
     temperature : temperature of the material, degrees Celsius; it needs ``wlf`` or ``arrhenius``.
     reference : temperature at which moduli and times are as given, degrees Celsius; default: the
         temperature at which the shift is 1.

@@ -95,7 +95,7 @@ class RunSection(msgspec.Struct, frozen=True):
     uncertain, without [drive] and unsteady, of half-spaces of one material; "integrate" integrates
     each motion; "auto" takes "flow" for at least 4096 motions where these conditions hold.
     rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
-    rest : speed, dimensionless; with [cylinder] in m/s.  A motion ends at rest where |V| and
+    rest : speed, dimensionless; with [cylinder] in m/s.  A motion ends at rest when |V| and
     R |omega| are below it and no force, torque, slope, brake, drag or prescribed speed acts any
     more.  Default: no such end.
     unsteady : whether the moment contains N dV/dt, the effect of slow changes of the speed (N is
