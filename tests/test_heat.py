@@ -240,7 +240,7 @@ def test_warming_keeps_the_labels_of_its_states():
 def test_limits_are_those_of_the_equilibria():
     V = np.array([1.0, 4.0])
     found = ROLLER.heat_limit(70.0, V=V, **WARM)
-    for speed, load in zip(V, found.load, strict=True):
+    for speed, load in zip(V, found.load):
         at = ROLLER.replace(load=load).temperature(speed, **WARM).temperature
         assert close(at[0], 70.0, tol.HEAT_BALANCE)
     assert close(ROLLER.heat_limit(70.0, load=found.load, **WARM).V, V, tol.HEAT_BALANCE)
@@ -275,7 +275,7 @@ def test_turning_points():
     )
     found = 0
     for at in (ROLLER, roller):
-        for V, _, runaway in zip(*at.turning_points(**COLD), strict=True):
+        for V, _, runaway in zip(*at.turning_points(**COLD)):
             less, more = (
                 at.temperature(V * (1.0 + e), **COLD).count for e in (-tol.TURNING, tol.TURNING)
             )
