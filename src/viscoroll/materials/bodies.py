@@ -71,8 +71,8 @@ class Bodies(OneOrMany):
 
     Notes
     -----
-    Plane strain, constant Poisson ratios.  Shear does not act on the pressure of like bodies, of
-    two incompressible ones, and of an incompressible body on a rigid one.  Immutable, hashable, equal where the parameters are.
+    Plane strain, constant Poisson ratios.  No coupling: like bodies, both incompressible, or an
+    incompressible body on a rigid one.  Immutable, hashable, equal where the parameters are.
 
     Examples
     --------
