@@ -44,7 +44,7 @@ from .prony_forms import HIGHEST_ALPHA, MOST_MODES
 class Bodies(OneOrMany):
     """A cylinder of one material on a half-space of another; or n such pairs.
 
-    Shear does not act on the pressure of these bodies: Dundurs' second constant is 0.
+    Shear acts on the pressure only if ``poisson`` gives a Dundurs' constant above 0.05.
 
     Parameters
     ----------
@@ -54,8 +54,8 @@ class Bodies(OneOrMany):
         If a body is n series, or ``share`` is an array (n,), these are n pairs: ``p[i]`` is one of
         them, ``p[i:k]`` are some; a single series or number is that of all pairs.
     poisson : Poisson's ratios (nu_1, nu_2) of cylinder and base in plane strain, each in (-1, 0.5].
-        ``contact(method="coupled")`` computes by them how shear acts on the pressure; other calls
-        neglect that action.  None (default): ratios with which there is none.
+        By them contact, steady rolling and motions consider that shear acts on the pressure, unless
+        the scene has ``coupled=False``.  None (default): ratios with which shear does not act.
 
     Attributes
     ----------
