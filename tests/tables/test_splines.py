@@ -119,8 +119,8 @@ def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, tmp_pat
 
 
 def test_a_grid_of_another_program(tmp_path):
-    """Q and M alone, in other units and order of dimensions, netCDF 3, no attribute of this
-    package.
+    """Q, M and the part of one body, whose other one is the rest, in other units and order of
+    dimensions, netCDF 3, no attribute of this package.
     """
     nodes = 1e-3 * V
     own = tables.build(ROLLER, nodes, delta=tables.creep_nodes(ROLLER, nodes, 81))
@@ -129,6 +129,7 @@ def test_a_grid_of_another_program(tmp_path):
     other["delta"].attrs["units"] = "1"
     for name, unit, factor in (("Q", "kN/m", 1e-3), ("M", "N mm/m", 1e3), ("V", "mm s-1", 1e3)):
         other[name] = (factor * other[name]).assign_attrs(units=unit)
+    other["M_cylinder"] = other["M"]
     other.to_netcdf(tmp_path / "other.nc", engine="scipy", format="NETCDF3_64BIT")
     speeds = np.array([1e-3, -3e-3, 1e-4, 2e-3])
     omega = speeds * np.array([1.001, 1.005, 0.99, 1.5]) / ROLLER.R

@@ -181,9 +181,9 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V or both, each with
         an attribute ``units`` ("1" for none); all over alpha too where there is an axis of that
-        name.  In place of M there may be M_half_space and M_cylinder; one that is missing is half
-        of M.  Its global attributes are mu (without it Q has no bound), and where V has a unit R in
-        m and, beside mu, the load in N/m; all > 0.
+        name.  In place of M there may be M_half_space and M_cylinder; beside M one of them may be
+        missing, and without both each is half of M.  Its global attributes are mu (without it Q has
+        no bound), and where V has a unit R in m and, beside mu, the load in N/m; all > 0.
     alpha : required where the grid has an axis alpha, whose nodes must be > 0 and ascend; between
         them a spline in ln alpha is used.  It must be left out, or None, for a grid without that
         axis.
@@ -352,7 +352,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
     _refuse_nodes(Q, against, path, allowed)
     if "M" in table.variables and "delta" in table["M"].dims:
         M = table["M"].transpose(*Q.dims)
-        of_cylinder = table.get("M_cylinder", 0.5 * M).transpose(*Q.dims)
+        of_cylinder = _moments_of_bodies(table)[1].transpose(*Q.dims)
         lost = M + table["delta"] * (arm * Q + of_cylinder)
         # noise/_NOISE is the largest |Q|
         made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), arm * noise / _NOISE)
@@ -429,12 +429,25 @@ def _in_si(table: Dataset) -> Dataset:
     return table.assign_attrs(scale=SI)
 
 
+def _moments_of_bodies(table: Dataset) -> list[Any]:
+    """Return M_half_space and M_cylinder of a grid: half of M each where neither is a variable; one
+    that is missing is M without the other.
+    """
+    M = table.get("M")
+    bodies = [table.get(name) for name in _MOMENTS[1:]]
+    for n, moment in enumerate(bodies):
+        if moment is None:
+            other = bodies[1 - n]
+            bodies[n] = 0.5 * M if other is None else M - other
+    return bodies
+
+
 def _law_of(table: Dataset) -> LawGrid:
     """Return the law of a grid, as splines: cubic, in ln V, and Q in delta too, clipped to |Q| <=
     :func:`friction_limit`.
 
-    table: dataset of a grid at one alpha, in SI units or dimensionless; without M_half_space or
-        M_cylinder that body has half of M.
+    table: dataset of a grid at one alpha, in SI units or dimensionless; M_half_space and
+        M_cylinder as for :func:`load_grid`.
     Returns the :class:`LawGrid`; without the attribute ``mu`` Q is not clipped and ``slips`` is
     False.
     Raises KeyError for a missing variable, and ValueError, of which ParameterError is one, for
@@ -447,7 +460,7 @@ def _law_of(table: Dataset) -> LawGrid:
     most = limit if limit < np.inf else 1.0
     Q = table["Q"].transpose("V", "delta").values
     slips = bool((Q[:, [0, -1]] * [-1.0, 1.0] >= (1.0 - _ROUNDING) * limit).all())
-    bodies = [table[name] if name in table else 0.5 * table["M"] for name in _MOMENTS[1:]]
+    bodies = _moments_of_bodies(table)
     moments = [field.broadcast_like(table["Q"]).transpose("V", "delta") for field in bodies]
     fields = np.stack([Q / most, *moments], axis=-1)
     # at V = 0 Q as at the slowest speed, and M over V alone is 0
