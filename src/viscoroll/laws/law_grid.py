@@ -433,8 +433,8 @@ def _moments_of_bodies(table: Dataset) -> list[Any]:
     """Return M_half_space and M_cylinder of a grid: half of M each where neither is a variable; one
     that is missing is M without the other.
     """
-    M = table.get("M")
-    bodies = [table.get(name) for name in _MOMENTS[1:]]
+    M: Any = table.get("M")
+    bodies: list[Any] = [table.get(name) for name in _MOMENTS[1:]]
     for n, moment in enumerate(bodies):
         if moment is None:
             other = bodies[1 - n]
