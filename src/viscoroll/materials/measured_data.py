@@ -337,8 +337,8 @@ class ShiftFactors:
         first to the last.
         """
         if len(self.a_T) < fewest:
-            allowed = f"a list of at least {fewest}, to fit this law"
-            raise described_error("temperature", f"has {len(self.a_T)} values", allowed)
+            allowed = f"one of at least {fewest} temperatures, to fit this law"
+            raise described_error("temperature", f"is a list of {len(self.a_T)}", allowed)
         if not self.a_T[-1] < self.a_T[0]:
             found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
             raise ParameterError("a_T", found, "shift factors that fall with temperature")

@@ -355,7 +355,7 @@ def master_curve(
     if open_shifts:
         warn_of_model(
             f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the "
-            "curves are flat: give known factors by shift="
+            "curves are flat: give known factors by shift= (in a shell: --wlf)"
             + ', or try on="storage"'
             * (on == "both")
         )
@@ -401,13 +401,14 @@ def _shifts_by_overlap(
             raise described_error(
                 name,
                 "do not agree after any shift",
-                "curves that overlap; leave one out, or give known factors by shift=",
+                "curves that overlap; leave one out, or give factors by shift= (in a shell: --wlf)",
             )
         if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
             raise described_error(
                 name,
                 f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve",
-                "curves that overlap more; measure between these temperatures, or give shift=",
+                "curves that overlap more; measure between these temperatures, or give known "
+                "factors by shift= (in a shell: --wlf)",
             )
         if alignment.disagree:
             torn.append(f"from {cold:g} to {warm:g} °C")
