@@ -68,8 +68,11 @@ class _ShiftLaw:
         found = check_celsius("temperature", temperature)
         above = found - self.pole
         if above <= 0.0:
-            allowed = f"above T0 - C2 = {self.pole} °C, where the WLF shift is infinite"
-            raise ParameterError("temperature", temperature, allowed)
+            raise ParameterError(
+                "temperature",
+                temperature,
+                f"above T0 - C2 = {self.pole} °C, where the WLF shift is infinite",
+            )
         # the difference of the reciprocals, without cancellation near T0
         exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
         if not abs(exponent) < 700.0:
