@@ -333,7 +333,7 @@ def understand(
                 path,
                 f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
                 f"({', '.join(bare)}): write headings, and a missing column, into the file; "
-                f"or, as they have the headings {', '.join(map(repr, table.headings))} here, "
+                f"or, as columns have the headings {', '.join(map(repr, table.headings))} here, "
                 f"{_NAME_THEM[test]}",
             )
         named = dict(zip(bare, table.headings))
