@@ -334,6 +334,9 @@ REFUSED = each(
     {
         "above ambient": lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD),
         "has no Material": lambda: vr.presets.RUBBER_ROLLER.heat_limit(70.0, load=1.0, **COLD),
+        "an elastic or rigid body": lambda: ROLLER.pair_temperatures(
+            1.0, ambient=(20.0, 20.0), conductance=(6.0, 6.0)
+        ),
         "below R": lambda: vr.conductance(0.1, thickness=0.2),
         "one a_T for each": lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0),
         "a_T = ": lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0),
@@ -475,7 +478,7 @@ def test_fit_at_the_strain_of_the_contact():
     ]
     assert "the set at a strain of" in vr.fit_at_strain(apart, ROLLER, 3.0).source
     for given, roller, words in (
-        ([sets[0], dataclasses.replace(sets[1], mode="shear")], ROLLER, "of one mode"),
+        ([sets[0], dataclasses.replace(sets[1], mode="shear")], ROLLER, "all of one of them"),
         ([], ROLLER, "at least one"),
         ([record(0.01), record(0.01)], ROLLER, "each of another strain"),
         (sets, vr.presets.RUBBER_ROLLER, "a Cylinder of a Material"),

@@ -193,7 +193,7 @@ REFUSED = [
         {
             "line 2: prior = 3: must be a section [prior]": ("[cylinder]", "prior = 3\n[cylinder]"),
             "is not a path: must be a text without null characters": ('"drum.csv"', '"a\\u0000"'),
-            "line 19: [data] needs kind: must be one of resistance, traction, coastdown": (
+            "line 19: [data] kind is missing: must be one of resistance, traction, coastdown": (
                 'kind = "resistance"',
                 "",
             ),

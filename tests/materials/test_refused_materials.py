@@ -134,7 +134,7 @@ REFUSED = [
                 vr.tables.law(11.0), "double.h"
             ),
             "'V': ..., 'omega': ...": lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1),
-            "2.0, 1.0 at rows 1, 2": lambda: vr.Coastdown(
+            "2.0, 1.0 at indices 1, 2": lambda: vr.Coastdown(
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
             "V0 of the record is not given": (
@@ -185,11 +185,11 @@ REFUSED = [
             "name = 'a': must be different for each record": {
                 "data": [vr.Resistance(HUMP, sigma=0.1, name="a")] * 2
             },
-            "data has values, but not of b: must be of one kind": {
+            "data has values in some records, but not in b: must be measured in all": {
                 "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
             },
             "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
-            "run: V0 | a number, since no data determine it": {
+            "run: V0 | a number, as the record has no data that show it": {
                 "data": [vr.Coastdown(TIMES, sigma=0.1)]
             },
             "temperature = 60.0 | given with a shift of the body, as shift={'material': vr.WLF(": {

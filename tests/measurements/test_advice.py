@@ -157,7 +157,7 @@ CASES = {
     ),
     "logarithms": (
         "f,Storage,Loss\n<log(f); log(S); log(L)>\n",
-        "write log before the heading of a logarithm",
+        "if these are logarithms, write log before the heading",
         change("f,Storage,Loss", "log f (Hz),log Storage (Pa),log Loss (Pa)"),
     ),
     "four columns without headings": (

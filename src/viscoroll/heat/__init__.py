@@ -521,11 +521,12 @@ def pair_temperatures(
 
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
-    if pair is None or scene.shape or pair.covered:
+    if pair is None or scene.shape or pair.covered or 1.0 in [b.prony.alpha for b in pair.bodies]:
         raise described_error(
             "roller",
-            "has arrays, a thickness or no Material",
-            "a Cylinder of Materials without thickness, and without arrays",
+            "has arrays, a thickness, an elastic or rigid body or no Material",
+            "a Cylinder of Materials that both relax, without thickness and arrays; if one alone "
+            "relaxes call vr.temperature",
         )
     V = check_number("V", V, unit=scale)
     speed = abs(V)

@@ -550,7 +550,7 @@ def check_ambient(ambient: Any, curve: ShiftCurve, name: str) -> None:
             raise described_error(
                 name,
                 f"= {at:g} degrees Celsius is outside the range of the shift of the material",
-                f"at least {curve.low:g} and at most {curve.high:g}",
+                f"from {curve.low:g} to {curve.high:g} degrees Celsius",
             )
 
 

@@ -266,11 +266,12 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     slow_limit = _solve_elastic(modes, modes.cover.share, 1.0) if thickness > _THINNEST else None
     # lam/2 is the half contact divided by l0, as is the thickness
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
-        allowed = (
+        raise ParameterError(
+            "thickness/l0",
+            f"{thickness:.3g}",
             f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long; "
-            "take a thicker layer or a smaller load (l0: contact length at rest of half-spaces)"
+            "take a thicker layer or a smaller load (l0: contact length at rest of half-spaces)",
         )
-        raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
     if not modes.series.a.size:
         L, lam = slow_limit[_LIMITED[:2]]
         # lam, epsilon, M/V of both bodies, eta/F = lam/L, H/F^2 = 1/L^2 (:func:`_stick_functions`)
@@ -438,11 +439,12 @@ def _find_length(
             return [*lengths, y + step], errors, states
         # at most a factor of 2 in z at once; no step so small that the next slope would be rounding
         y += math.copysign(min(max(_LEAST_STEP, abs(step)), 0.7), step)
-    allowed = (
+    raise ParameterError(
+        "thickness/l0",
+        f"{modes.cover.thinnest:g}",
         "larger, as no contact length was found that carries the load; take a thicker layer or a "
-        "smaller load (l0: contact length at rest of half-spaces)"
+        "smaller load (l0: contact length at rest of half-spaces)",
     )
-    raise ParameterError("thickness/l0", f"{modes.cover.thinnest:g}", allowed)
 
 
 def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:

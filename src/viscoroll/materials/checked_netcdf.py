@@ -412,7 +412,7 @@ def load_material(path: FilePath, make: Any) -> Any:
     """
     numbers, about = read_content(path, "material that Material.to_netcdf wrote", _REWRITE)
     if str(about.get(KIND)) in KINDS:
-        raise FileError(path, "is a law, not a material: read it by vr.load_law")
+        raise FileError(path, f"is a law, not a material: read it by vr.load_law, or {_REWRITE}")
     if {"V", "Q"} <= numbers.keys():
         raise FileError(
             path,

@@ -230,8 +230,8 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
             path,
             name,
             key,
-            f"{key} must be left out beside the key file: to change {key}, write the content "
-            "of that file here in place of file",
+            f"{key} must be left out beside the key file: to change {key}, write the keys of the "
+            "material (E, nu, ...) here in place of file",
         )
     return as_struct(path, name, content, FileSection)
 

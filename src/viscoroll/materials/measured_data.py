@@ -68,8 +68,11 @@ class _ShiftLaw:
         found = check_celsius("temperature", temperature)
         above = found - self.pole
         if above <= 0.0:
-            allowed = f"above T0 - C2 = {self.pole} °C, where the WLF shift is infinite"
-            raise ParameterError("temperature", temperature, allowed)
+            raise ParameterError(
+                "temperature",
+                temperature,
+                f"above T0 - C2 = {self.pole} °C, where the WLF shift is infinite",
+            )
         # the difference of the reciprocals, without cancellation near T0
         exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
         if not abs(exponent) < 700.0:
@@ -337,8 +340,8 @@ class ShiftFactors:
         first to the last.
         """
         if len(self.a_T) < fewest:
-            allowed = f"a list of at least {fewest}, to fit this law"
-            raise described_error("temperature", f"has {len(self.a_T)} values", allowed)
+            allowed = f"one of at least {fewest} temperatures, to fit this law"
+            raise described_error("temperature", f"is a list of {len(self.a_T)}", allowed)
         if not self.a_T[-1] < self.a_T[0]:
             found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
             raise ParameterError("a_T", found, "shift factors that fall with temperature")

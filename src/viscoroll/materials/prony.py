@@ -209,8 +209,11 @@ class Prony(OneOrMany):
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
-            allowed = f"left out, or 1/(1 - sum of J) = {1.0 / rest[off].flat[0]!s}"
-            raise ParameterError("alpha", given[off].flat[0], allowed)
+            raise ParameterError(
+                "alpha",
+                given[off].flat[0],
+                f"left out, or 1/(1 - sum of J) = {1.0 / rest[off].flat[0]!s}",
+            )
         if (given > HIGHEST_ALPHA).any():
             raise ParameterError(
                 "J", strengths.tolist(), f"such that 1/(1 - sum of J) is at most {HIGHEST_ALPHA:g}"

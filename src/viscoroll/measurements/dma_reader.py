@@ -312,7 +312,7 @@ def read_dma(
     # the decades of a modulus are below 10, and those of a low frequency negative
     advice = "correct or remove the row"
     if omega.min() < 0.0 or storage.max() < SOFTEST:
-        advice = "write log before the heading of a logarithm"
+        advice += ", or, if these are logarithms, write log before the heading"
     for name, values in {
         "frequency": omega,
         "storage modulus": storage,
@@ -392,7 +392,7 @@ def _choose_columns(source: Understood) -> tuple[str, tuple[str, str], dict[str,
     quantities = {column.quantity for column in found}
     problem = (
         "no column was found for frequency"
-        + ", since this is a sweep of temperature: measure a sweep of frequency"
+        + " (a sweep of temperature has none: measure a sweep of frequency)"
         * ("temperature" in quantities)
     )
     if quantities & {"frequency", "reduced frequency"}:

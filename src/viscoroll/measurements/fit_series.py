@@ -198,7 +198,8 @@ def fit_prony(
             raise ParameterError(
                 "mode",
                 repr(mode),
-                f"{record.mode!r}, the mode of {record.source or 'the data'}, or left out",
+                f"{record.mode!r}, the mode of {record.source or 'the data'}, or left out (the "
+                "headings E' and E'' mean tension, G' and G'' shear)",
             )
         omega = record.omega
         storage = record.storage
@@ -321,8 +322,8 @@ def fit_relaxation(
             raise described_error(
                 "relaxation or mode",
                 "is given",
-                "left out, since the result of read_relaxation contains both; write modes=5 for a "
-                "number of modes",
+                "left out, since the result of read_relaxation contains both (by headings E(t) for "
+                "tension, G(t) for shear); write modes=5 for a number of modes",
             )
         mode = _mode(t.mode)
         source = source or t.source
@@ -519,8 +520,8 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
         if record.mean_strain is None:
             raise described_error(
                 "records",
-                f"have one without strain ({record.source or 'without source'})",
-                "of files with a column of strain and its unit; fit_prony(record) fits one without",
+                f"have one without strain{f' ({record.source})' * bool(record.source)}",
+                "of files that have a column of strain with its unit; fit_prony(record) needs none",
             )
         strains = np.asarray(record.strain)
         order = np.argsort(strains, kind="stable")
@@ -530,10 +531,10 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
         found += [_points(record, np.sort(part)) for part in parts]
     means = [each.mean_strain for each in found]
     if len({*means}) < max(1, len(means)):
-        allowed = "at least one, each of another strain"
-        raise described_error("records", f"have the strains {means}", allowed)
+        found = f"have the strains {', '.join(f'{mean:.4g}' for mean in means) or '(none)'}"
+        raise described_error("records", found, "at least one, each of another strain")
     if len({each.mode for each in found}) > 1:
-        raise described_error("records", "are of tension and of shear", "of one mode")
+        raise described_error("records", "are of tension and of shear", "all of one of them")
     return sorted(found, key=lambda each: each.mean_strain)
 
 
@@ -564,9 +565,9 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
     known = [each.temperature for each in (less, more) if each.temperature is not None]
     isothermal = not known or np.ptp(np.concatenate(known)) <= SAME_TEMPERATURE
     if not (0.0 < part < 1.0 and isothermal):
-        nearest = less if part < 0.5 else more
+        near = less if part < 0.5 else more
         return replace(
-            nearest, source=f"{nearest.source}, the set at a strain of {nearest.mean_strain:.3g}"
+            near, source=f"{near.source or 'record'}, the set at a strain of {near.mean_strain:.3g}"
         )
     both = (less.omega >= more.omega.min()) & (less.omega <= more.omega.max())
     low = _points(less, both)
@@ -576,8 +577,8 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
         other = np.interp(np.log(low.omega), np.log(more.omega), np.log(getattr(more, name)))
         moduli[name] = np.exp((1.0 - part) * np.log(getattr(low, name)) + part * other)
     source = (
-        f"{low.source}, interpolated at a strain of {strain:.3g} between the sets at "
+        f"{low.source or 'record'}, interpolated at a strain of {strain:.3g} between the sets at "
         f"{strains[n - 1]:.3g} and {strains[n]:.3g}"
     )
     strain_of_points = np.full(low.omega.size, strain)
-    return replace(low, strain=strain_of_points, source=source.removeprefix(", "), **moduli)
+    return replace(low, strain=strain_of_points, source=source, **moduli)

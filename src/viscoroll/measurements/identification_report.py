@@ -75,7 +75,7 @@ def _heading(fit: Any) -> str:
     from scipy import stats
 
     problem = fit._problem
-    head = f"{len(fit.values)} unknowns, {problem.y.size} points"
+    head = f"{len(fit.values)} unknown{'s' * (len(fit.values) > 1)}, {problem.y.size} points"
     if fit.planned:
         return f"{head}, planned: expected standard deviations, if the cylinder has the true values"
     if estimated := [
@@ -259,7 +259,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
                 "cylinder with these values, or more starts="
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
-        yield f"the best fit has {problem.names[i]} at the end of its range: extend the range"
+        yield f"the best fit has {problem.names[i]} at the end of its range: extend it, if possible"
     for bound, ends in limited.items():
         yield f"the range given for {bound}, not the data, determines {', '.join(ends)}"
 
@@ -281,7 +281,7 @@ def _phases(fit: Any) -> Iterator[str]:
         slips = np.sum(predicted.get("slips", 0))
         if 0 < slips < _FEW:
             yield (
-                f"{record_name} has only {slips} points in full slip, which determine mu: record "
+                f"{record_name} has few points in full slip ({slips}), which determine mu: record "
                 "that phase more densely"
             )
 

@@ -168,8 +168,9 @@ def identify(
     if changing and cylinder.scene().tabulated:
         raise described_error(
             "coupled",
-            f"is not False: the coupled solution needs a table for each value of {changing[0]}",
-            "False in the Cylinder, for the fast law, whose error cylinder.validity(V) states",
+            f"is not False, and the coupled solution needs a table for each value of {changing[0]}",
+            "False in the Cylinder (in a file: coupled = false in [cylinder]), for the fast law, "
+            "whose error cylinder.validity(V) states",
         )
     problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
     # a standard deviation that is estimated needs one degree of freedom
@@ -220,8 +221,9 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
     if 0 < len(planned) < len(found):
         raise described_error(
             "data",
-            f"has values, but not of {', '.join(planned)}",
-            "of one kind: give these values, or fit the others and plan these with fit.cylinder",
+            f"has values in some records, but not in {', '.join(planned)}",
+            "measured in all records or, for a plan, in none: give the missing values, or fit the "
+            "others, and plan these with fit.cylinder",
         )
     return found
 
@@ -449,7 +451,7 @@ def _record(path: Path, content: Any, number: int) -> Record:
     given = content.get("kind") if isinstance(content, dict) else None
     kind = _KINDS.get(str(given))
     if kind is None:
-        found = "needs kind" if given is None else f"kind = {given!r:.40}"
+        found = "kind is missing" if given is None else f"kind = {given!r:.40}"
         raise section_error(
             path,
             header,

@@ -171,8 +171,11 @@ def listed_factors(
             "shift", f"{factors.min():g}", "> 0: give the factors a_T, not their logarithms"
         )
     if factors.shape != of_curve.shape:
-        allowed = f"one factor for each of {of_curve.size} temperatures or curves, in their order"
-        raise shape_error("shift", factors.shape, allowed)
+        raise shape_error(
+            "shift",
+            factors.shape,
+            f"one factor for each of {of_curve.size} temperatures or curves, in their order",
+        )
     found = np.empty(len(temperatures))
     # of several curves of a set the last factor stays, with which all are compared
     found[of_curve] = factors
@@ -315,8 +318,11 @@ def master_curve(
     else:
         base = reference_of(base, temperatures, [])
         if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
-            allowed = f"from {low} to {high} °C, as the curves, or at most 0.5 K outside"
-            raise ParameterError("reference", base, allowed)
+            raise ParameterError(
+                "reference",
+                base,
+                f"from {low} to {high} °C, as the curves, or at most 0.5 K outside",
+            )
         curves = []
         for n, T in enumerate(temperatures):
             part = [column[of_point == n] for column in (x, *moduli)]
@@ -355,7 +361,7 @@ def master_curve(
     if open_shifts:
         warn_of_model(
             f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the "
-            "curves are flat: give known factors by shift="
+            "curves are flat: give known factors by shift= (in a shell: --wlf)"
             + ', or try on="storage"'
             * (on == "both")
         )
@@ -401,13 +407,14 @@ def _shifts_by_overlap(
             raise described_error(
                 name,
                 "do not agree after any shift",
-                "curves that overlap; leave one out, or give known factors by shift=",
+                "curves that overlap; leave one out, or give factors by shift= (in a shell: --wlf)",
             )
         if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
             raise described_error(
                 name,
                 f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve",
-                "curves that overlap more; measure between these temperatures, or give shift=",
+                "curves that overlap more; measure between these temperatures, or give known "
+                "factors by shift= (in a shell: --wlf)",
             )
         if alignment.disagree:
             torn.append(f"from {cold:g} to {warm:g} °C")
@@ -449,8 +456,11 @@ class _LogCurve:
             [np.bincount(which, np.log(column)) / count for column in columns], axis=1
         )
         if self.x.size < 2:
-            found = "has a single value at one temperature"
-            raise described_error("omega", found, "two frequencies or more at each temperature")
+            raise described_error(
+                "omega",
+                "has a single value at one temperature",
+                "two frequencies or more at each temperature",
+            )
         kind = CubicSpline if self.x.size > 3 else PchipInterpolator
         self.interpolate = kind(self.x, self.y)
 

@@ -468,7 +468,7 @@ class Coastdown(Record):
         if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
             n = falls[0]
             raise ParameterError(
-                self.label("t"), f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}", "in ascending order"
+                self.label("t"), f"{t[n]}, {t[n + 1]} at indices {n}, {n + 1}", "in ascending order"
             )
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
@@ -523,7 +523,7 @@ class Coastdown(Record):
             if value is None:
                 if data is None:
                     raise ParameterError(
-                        self.label(name), None, "a number, since no data determine it"
+                        self.label(name), None, "a number, as the record has no data that show it"
                     )
                 first = float(data[0])
                 most = float(np.abs(data).max())

@@ -108,7 +108,8 @@ def storage_and_loss(
         values, half = columns[name]
         table.require(
             np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half,
-            f"{name} contradicts {both}: {unit_advice(name)}, or remove one of these columns",
+            f"{name} contradicts {both}: give the unit of one, as units={{'tan delta': '%'}} (in a "
+            "shell: --units 'tan delta=%'), or remove one of these columns",
         )
     return storage, loss
 
@@ -331,8 +332,8 @@ def understand(
             raise FileError(
                 path,
                 f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
-                f"({', '.join(bare)}): add a missing column to the file; of more columns, which "
-                f"have the headings {', '.join(map(repr, table.headings))} here, "
+                f"({', '.join(bare)}): write headings, and a missing column, into the file; "
+                f"or, as columns have the headings {', '.join(map(repr, table.headings))} here, "
                 f"{_NAME_THEM[test]}",
             )
         named = dict(zip(bare, table.headings))

@@ -336,8 +336,8 @@ class _Layout(NamedTuple):
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
                     row,
-                    f"has {len(row.cells)} cells {self.cut}, but line {line.number} has "
-                    f"{len(names)} headings: correct one of these two lines",
+                    f"has {len(row.cells)} cells {self.cut}, but the number of headings in line "
+                    f"{line.number} is {len(names)}: correct one of these two lines",
                 )
         return names, self.units(body[:first], len(names)), rows
 
