@@ -531,8 +531,10 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
         found += [_points(record, np.sort(part)) for part in parts]
     means = [each.mean_strain for each in found]
     if len({*means}) < max(1, len(means)):
-        found = f"have the strains {', '.join(f'{mean:.4g}' for mean in means) or '(none)'}"
-        raise described_error("records", found, "at least one, each of another strain")
+        given = ", ".join(f"{mean:.4g}" for mean in means) or "(none)"
+        raise described_error(
+            "records", f"have the strains {given}", "at least one, each of another strain"
+        )
     if len({each.mode for each in found}) > 1:
         raise described_error("records", "are of tension and of shear", "all of one of them")
     return sorted(found, key=lambda each: each.mean_strain)
