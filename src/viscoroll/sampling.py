@@ -163,7 +163,7 @@ def _is_distribution(name: str, value: Any) -> bool:
             "a finite number, or a distribution of scipy.stats with parameters, as norm(0.3, 0.01)"
             + ", and with a finite median (scale > 0)" * random
         )
-        raise ParameterError(name, f"{value!s:.60}", allowed) from None
+        raise ParameterError(name, describe_value(value), allowed) from None
     return random
 
 
