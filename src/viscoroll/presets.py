@@ -271,7 +271,7 @@ def make_roller(
     return Scene(**given)
 
 
-def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
+def locate_error(path: Any, content: dict[str, Any], error: ParameterError) -> FileError:
     """Return the error of a parameter as a FileError with the section and the number of the line
     that gives it.
 
@@ -288,7 +288,7 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
     # [scene] and [cylinder] first, as [material] may give a key of the same name
     sections = (
         name
-        for name, given in {**SCHEMA, **content}.items()
+        for name, given in (SCHEMA | content).items()
         if isinstance(given, dict) and key in given
     )
     default = next((name for name in SCHEMA if name in content), "")

@@ -160,9 +160,9 @@ def _is_distribution(name: str, value: Any) -> bool:
         check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
         allowed = (
-            "a finite number, or a distribution of scipy.stats with parameters, as norm(0.3, 0.01)"
-            + ", and with a finite median (scale > 0)" * random
+            "a finite number, or a distribution of scipy.stats with a finite median and scale "
         )
+        allowed += "> 0, as norm(0.3, 0.01)"
         raise ParameterError(name, describe_value(value), allowed) from None
     return random
 
