@@ -159,10 +159,7 @@ def _is_distribution(name: str, value: Any) -> bool:
     try:
         check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
-        allowed = (
-            "a finite number, or a distribution of scipy.stats with a finite median and scale "
-        )
-        allowed += "> 0, as norm(0.3, 0.01)"
+        allowed = "a finite number, or a distribution of finite median as scipy.stats.norm(0, 1)"
         raise ParameterError(name, describe_value(value), allowed) from None
     return random
 
