@@ -306,7 +306,7 @@ REFUSED = [
     *files(
         of_law_source,
         {
-            "file.toml | section [material] is missing": [
+            "file.toml | section [material] | is missing": [
                 "[base]\nE = 2e11\nnu = 0.3\n",
                 "[other]\nx = 1",
             ],

@@ -271,7 +271,7 @@ def make_roller(
     return Scene(**given)
 
 
-def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
+def locate_error(path: Any, content: dict[str, Any], error: ParameterError) -> FileError:
     """Return the error of a parameter as a FileError with the section and the number of the line
     that gives it.
 
@@ -285,7 +285,12 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
     """
     # of two parameters the first one
     key = error.name.partition(",")[0]
-    sections = (name for name, given in content.items() if isinstance(given, dict) and key in given)
+    # [scene] and [cylinder] first, as [material] may give a key of the same name
+    sections = (
+        name
+        for name, given in (SCHEMA | content).items()
+        if isinstance(given, dict) and key in given
+    )
     default = next((name for name in SCHEMA if name in content), "")
     # the section "" is the top level, where preset stands
     return section_error(path, "" if key in content else next(sections, default), key, str(error))
@@ -332,6 +337,6 @@ def read_law_source(path: FilePath) -> Any:
         return roller.alpha if roller.material is None else roller.material
     materials = read_materials(path)
     if "material" not in materials:
-        raise FileError(path, "section [material] is missing")
+        raise FileError(path, "section [material], [scene] or [cylinder] is missing")
     with as_section_error(path, "base"):
         return Pair(materials["material"], materials.get("base"))

@@ -159,11 +159,8 @@ def _is_distribution(name: str, value: Any) -> bool:
     try:
         check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
-        allowed = (
-            "a finite number, or a distribution of scipy.stats with parameters, as norm(0.3, 0.01)"
-            + ", and with a finite median (scale > 0)" * random
-        )
-        raise ParameterError(name, f"{value!s:.60}", allowed) from None
+        allowed = "a finite number, or a distribution of finite median as scipy.stats.norm(0, 1)"
+        raise ParameterError(name, describe_value(value), allowed) from None
     return random
 
 

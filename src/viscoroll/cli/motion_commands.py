@@ -241,7 +241,7 @@ def steady(arguments: Namespace) -> None:
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if (further := len(lines) - _MOST_LINES) > 0:
         lines[_MOST_LINES:] = [
-            f"no steady speed for {further} more of the loads, of which the first is load 0"
+            f"no steady speed for {further} more of the loads, which are counted from 0"
         ]
     # a table for programs has no heading
     if arguments.output is not None or arguments.format != "text":

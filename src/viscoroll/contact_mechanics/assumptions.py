@@ -192,15 +192,15 @@ UNKNOWN = Validity(
         for sentence in (
             "",
             "",
-            "inertia of the deforming bodies is neglected; give density= to compare the speed with "
-            "the shear wave speed",
+            "inertia of the deforming bodies is neglected; to compare the speed with the shear "
+            "wave speed, give density= to a Material, or to validity of a Cylinder",
             "the quasi-steady assumption for motions is not checked: give the scene a gamma",
             "the surface speeds of the two bodies are not compared: give omega=",
             "Dundurs' constant, by which shear changes the pressure, must be 0, as for identical "
             "materials, unless both are solved together, as of Bodies with poisson=; a scene does "
             "not state the materials: use a Cylinder",
             "the transit frequency (speed divided by contact length) is not compared with that of "
-            "the measurements: give the Material measured=",
+            "the measurements: give the Cylinder a Material with measured=",
             "no thickness is given: the law is that of a half-space.  It applies to a layer if the "
             "contact is at most "
             f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
@@ -210,7 +210,7 @@ UNKNOWN = Validity(
             "stress (a thin disc)",
             "the strain of the contact is not compared with that of the measurements: a scene does "
             "not state the materials, use a Cylinder",
-            "each body has one temperature: roller.temperature finds that of long rolling, "
+            "each body has one temperature: Cylinder.temperature finds that of long rolling, "
             "vr.uniform_temperature tells whether one suffices for a body; to check that of a "
             "motion, call its validity(capacity=) with the heat stored per kelvin",
         )

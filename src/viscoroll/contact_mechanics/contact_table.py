@@ -298,8 +298,8 @@ def evaluate_contact(
         raise ParameterError(
             "method",
             "'direct'",
-            "'table' or 'coupled' where a material is given: method 'direct' needs one relaxation "
-            "time, by alpha of a Scene, or T_epsilon and T_sigma of a Cylinder",
+            "'table' where a material or grid is given: method 'direct' needs one relaxation time, "
+            "by alpha of a Scene, or T_epsilon and T_sigma of a Cylinder",
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):

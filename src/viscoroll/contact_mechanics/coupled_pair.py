@@ -341,7 +341,7 @@ def pair_of_scene(scene: Any) -> CoupledPair:
     """
     material = scene.material
     if scene.gridded:
-        raise described_error("material", "is a grid of Q and M", "the bodies for this method")
+        raise described_error("material", "is a grid of Q and M", "a Prony, Bodies or Cover here")
     if np.size(scene.alpha) != 1 or scene.material_array is not None:
         shape = np.shape(scene.alpha)
         allowed = "a single material with method='coupled': make a call for each"

@@ -253,7 +253,7 @@ def warn_of_start(
         faults = _worst_start_faults(scene, numbers, driven)
     if data is not None:
         faults += _absurd_sizes(data)
-    _warn_of_faults(faults, "motion", "validity() of scene or result")
+    _warn_of_faults(faults, "motion", "validity() of roller or result")
 
 
 def _start_faults(

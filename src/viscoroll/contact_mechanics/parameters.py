@@ -206,7 +206,7 @@ class Parameters(Roller):
             values["alpha"] = material
             material = None
         elif material is not None:
-            allowed = "a Prony, a Bodies, or a law of vr.load_law (a Material is for a Cylinder)"
+            allowed = "a Prony, Bodies, Cover or law of vr.load_law (a Material is for a Cylinder)"
             raise ParameterError("material", describe_value(material), allowed)
         arrays = {"alpha": check_array("alpha", values.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
@@ -502,7 +502,7 @@ def resolve_model(
         if isinstance(roller, LawGrid):
             sentence = (
                 f"{call} takes a Scene or a Cylinder, not a grid: give the grid as the material= "
-                "of a Scene, or evaluate it by vr.law(grid) (docs/howto/law.md)"
+                "of a Scene, or evaluate it by vr.law(grid)"
             )
         raise ParameterError("roller", type(roller).__name__, "a Scene or a Cylinder", sentence)
     if slope is not None:
@@ -511,7 +511,7 @@ def resolve_model(
     if moves and scene.gamma is None:
         sentence = (
             f"{call} needs the scene's gamma = P T_epsilon^2/(m R), the ratio of load to inertia, "
-            "but gamma is not given: give Scene(..., gamma=)"
+            "but gamma is not given: give Scene(..., gamma=), or gamma in [scene] of a file"
         )
         raise ParameterError("gamma", None, "a number > 0", sentence)
     return roller, scene, roller.scale

@@ -337,7 +337,7 @@ def _cancelling_error(of_force: float, of_torque: float) -> ParameterError:
     return described_error(
         "gains on omega of force and torque",
         f"are {of_force:g} and {of_torque:g}, which nearly cancel",
-        "numbers whose sum is farther from 0, else the traction on a layer is undetermined",
+        "numbers whose sum is farther from 0, else the traction is undetermined",
     )
 
 

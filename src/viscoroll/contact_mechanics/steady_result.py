@@ -150,8 +150,8 @@ class Diagnosis(NamedTuple):
             )
         if self.maximum is None:
             return (
-                f"at no speed that was searched the {moment} equals {name} ({total:.6g}{of_load} "
-                "at rest)"
+                f"at no speed that was searched does the {moment} equal {name} ({total:.6g}"
+                f"{of_load} at rest)"
             )
         M, V = np.divide(self.maximum, loads.kappa[n])
         return (

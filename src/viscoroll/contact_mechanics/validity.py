@@ -307,7 +307,7 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     Returns a str without a full stop.
     """
     text = (
-        f"unsteadiness (relative error of V) up to {most:.2g}, {STEADY_LIMIT} is allowed: "
+        f"unsteadiness (relative error of V) up to {most:.2g}, where {STEADY_LIMIT} is allowed: "
         "the error of V is below 10 % "
     )
     if most <= STEADY_LIMIT:

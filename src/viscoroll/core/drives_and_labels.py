@@ -77,7 +77,7 @@ class Schedule:
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
-            allowed = "both (k,) for k times, or (n, k) with a row for each of n motions"
+            allowed = "(k,) or (n, k), both of the same k times, with a row for each of n motions"
             raise ParameterError("shapes of a Schedule", shapes, allowed)
         for wrong, found, allowed in (
             (times[..., 1:] < times[..., :-1], "fall after {:.6g}", "in ascending order"),

@@ -468,9 +468,11 @@ def _start_values(
             "mass": given.m,
             "inertia": given.j,
         }
-    for name, value in values.items():
-        if np.ndim(value):
-            raise shape_error(name, np.shape(value), "one number, as an FMU contains one cylinder")
+        for name, value in given.numbers.items():
+            if np.ndim(value):
+                raise shape_error(
+                    name, np.shape(value), "one number, as an FMU contains one cylinder"
+                )
     return {name: float(values.get(name, start)) for name, start in starts.items()}
 
 

@@ -578,7 +578,7 @@ def roll(
     if not motion.success:
         warnings.warn(
             f"roll: {motion.status.message}; outputs not reached are NaN, and the message of the "
-            "motion gives the last state",
+            "motion gives the last state, if any was reached",
             RuntimeWarning,
             stacklevel=2,
         )

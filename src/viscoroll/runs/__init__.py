@@ -169,7 +169,7 @@ def run_ensemble(
                     advance(motions)
             except KeyboardInterrupt:
                 kept = f"{evaluated} of {run.blocks} blocks are complete and are kept in {path}"
-                raise Interrupted(f"interrupted: {kept}; the same call resumes the run") from None
+                raise Interrupted(f"interrupted: {kept}; to resume, repeat the run") from None
             store.finish()
     return evaluated
 
@@ -274,7 +274,7 @@ def _executor(
     except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
         text = " ".join((str(error) or type(error).__name__).split())
         problem = f"the connection to the cluster was lost ({text:.200})"
-        raise FileError(cluster, f"{problem}: the same command resumes the run") from error
+        raise FileError(cluster, f"{problem}: the same call or command resumes the run") from error
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:

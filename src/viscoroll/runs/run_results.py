@@ -137,12 +137,12 @@ def start_of(root: Path) -> Record:
     damaged one.
     """
     if not root.is_dir():
-        raise FileError(root, "is not a results store: the folder does not exist")
+        raise FileError(root, "is not a results store: there is no such folder")
     refuse_unreadable(root)
     if start := read_record(root / RECORDS / "start"):
         return start
     raise FileError(
-        root, "is not a results store, or is damaged: repeat its `viscoroll ensemble` to repair it"
+        root, "is not a results store, or is damaged: the command or call that wrote it repairs it"
     )
 
 

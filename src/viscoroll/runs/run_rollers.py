@@ -204,7 +204,7 @@ def _warm_bodies(content: Named, numbers: Named, bodies: Named) -> Named:
             raise described_error(
                 name,
                 "has uncertain numbers",
-                "certain beside [heat]: its temperature follows from the law of one material",
+                "without these beside [heat], as the temperature is that of one material",
             )
     ambient = heat["ambient"]
     found = Cylinder(**numbers, **bodies).temperature(

@@ -175,7 +175,7 @@ def _independent_inputs(inputs: Inputs) -> Names:
     """
     if not inputs.uncertain:
         raise described_error(
-            "the run file", "has no uncertain input", "one in which an input has a distribution"
+            "the run file", "has no uncertain input", "one with distributions or columns of files"
         )
     if inputs.correlated:
         allowed = "left out: Sobol indices are defined for independent inputs only"
