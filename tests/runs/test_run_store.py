@@ -261,7 +261,7 @@ def test_an_interrupt_answers_at_once(tmp_path):
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
     kept = (
-        "interrupted: 0 of 4 blocks are complete and are kept in store.zarr; the same call "
-        "resumes the run"
+        "interrupted: 0 of 4 blocks are complete and are kept in store.zarr; to resume, repeat "
+        "the run"
     )
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

@@ -157,7 +157,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     ):
         refused(beyond, "within the table")
     refused(lambda: grid.contact(0.1, delta=0.0, method="coupled"), "material is a grid of Q and M")
-    refused(lambda: grid.contact(0.1, delta=0.0, method="direct"), "where a material is given")
+    refused(lambda: grid.contact(0.1, delta=0.0, method="direct"), "a material or grid is given")
     most, known = (vr.resistance_extrema(each).M for each in (grid, rows))
     assert close(most, known, tol.GRID_MOTION)
     ends, known = (each.steady(torque=0.05).V for each in (grid, rows))

@@ -593,6 +593,7 @@ def fmu(arguments: Namespace) -> None:
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
         text = "an FMU is in SI units: kappa, mu, gamma and j of the dimensionless scene are not "
-        text += "used; set R, E_prime, T_ref, mu, load and mass in the tool"
+        text += "used; set its own parameters, as R, T_ref, mu, load, mass and inertia (= j), in "
+        text += "the program that imports it"
         warnings.warn(text, vr.ModelWarning, stacklevel=2)
     _print_size(arguments.output)

@@ -220,7 +220,10 @@ class Quantity(NamedTuple):
         either case.
         """
         if self.part:
-            return {"long_name": f"share of the initial kinetic energy {self.part}", "units": "1"}
+            return {
+                "long_name": f"energy {self.part} over the kinetic energy at the start",
+                "units": "1",
+            }
         return column_attributes(self.column, si)
 
 
