@@ -112,7 +112,7 @@ def test_rows_are_the_solve(scene):
     of_Q = [MU * shear[4], MU * shear[5]]
     for n, lever in enumerate((2.0 * KAPPA, 2.0 * KAPPA + shear[0] + shear[1])):
         of_Q.append(-MU / lever * (shear[n] + limited * shear[2 + n]))
-    for name, change in zip(full.keys(), of_Q):
+    for name, change in zip(full.keys(), of_Q, strict=True):
         assert close(full[name] - found[name], change, rel, scale=1.0, what=name)
 
 
@@ -348,7 +348,7 @@ def test_the_header_of_C_is_the_contact(covered, tmp_path):
     states(V.size, ctypes.c_double(scene.kappa), ctypes.c_double(scene.mu), *pointers)
     fields = C_FIELDS.split()
     known = scene.contact(V, omega=omega, slopes=True, fields=fields)
-    for name, values in zip(fields, out.T):
+    for name, values in zip(fields, out.T, strict=True):
         scale = abs(known[name]).max() if name in ("Q", "beta", "delta_0") else 0.0
         assert close(values, known[name], tol.COVER_IN_C, scale=scale, what=name)
 

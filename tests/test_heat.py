@@ -240,7 +240,7 @@ def test_warming_keeps_the_labels_of_its_states():
 def test_limits_are_those_of_the_equilibria():
     V = np.array([1.0, 4.0])
     found = ROLLER.heat_limit(70.0, V=V, **WARM)
-    for speed, load in zip(V, found.load):
+    for speed, load in zip(V, found.load, strict=True):
         at = ROLLER.replace(load=load).temperature(speed, **WARM).temperature
         assert close(at[0], 70.0, tol.HEAT_BALANCE)
     assert close(ROLLER.heat_limit(70.0, load=found.load, **WARM).V, V, tol.HEAT_BALANCE)
@@ -324,6 +324,7 @@ REFUSED = each(
             WLF, vertical_shift="entropic", thickness=0.03
         ),
         "relaxes too": [
+            beside(temperature=60.0),
             beside(thickness=0.01),
             beside(shift=vr.WLF(T0=-60.0)),
         ],
@@ -404,7 +405,7 @@ conductance = 6.0
     assert run.inputs.uncertain == ("ambient",)
     ambient = np.array([0.0, 30.0])
     found = roll_inputs(run, {"ambient": ambient}, 2)
-    for V, A in zip(found.V[:, -1], ambient):
+    for V, A in zip(found.V[:, -1], ambient, strict=True):
         theta = float(ROLLER.temperature(3.0, ambient=A, conductance=6.0).temperature[0])
         assert close(
             V, ROLLER.replace(material=RUBBER.at(theta)).roll(3.0, 30.0, [1.0]).V[-1], 1e-7

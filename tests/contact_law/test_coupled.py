@@ -103,9 +103,7 @@ def losses_by_transforms(pair, u, profile):
     for body in pair:
         J = sum(j / (1.0 - 1j * k * t * u) for j, t in zip(body.J, body.T)).imag
         local = (1.0 - 2.0 * body.nu) / (2.0 - 2.0 * body.nu)
-        wave = np.minimum(k * body.thickness, 300.0)
-        finite = math.isfinite(body.thickness)
-        L, shear, C = layer_excess(body.nu, wave) if finite else (0.0, 0.0, 0.0)
+        L, shear, C = layer_excess(body.nu, np.minimum(k * body.thickness, 300.0))
         L, T, C = 1.0 + L, 1.0 + L + shear, local + C
         t = -q if body.side == "base" else q
         total += (

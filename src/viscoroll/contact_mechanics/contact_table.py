@@ -389,7 +389,7 @@ def evaluate_law(
         elif material is None and not direct:
             laws = records_of_alphas(alpha, _ALPHAS_TOGETHER)
             order = sort_by_octave(alpha, kappa, V)
-        given = states.State(kappa, mu, V, creep, creep_is_omega)
+        given = states.State(kappa=kappa, mu=mu, V=V, creep=creep, creep_is_omega=creep_is_omega)
         request = states.Request(states=given, order=order, to=rows, out=out, first=start)
         scratch = np.empty(states.SCRATCH_SIZE)
         if record and record.table is not None:

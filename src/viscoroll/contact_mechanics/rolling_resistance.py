@@ -197,7 +197,13 @@ def branches(law: LawTable, gain: float) -> Branches:
     u = np.union1d(u, flat)
     resistance = _curve(law, gain, u)[0]
     n = resistance.argmax()
-    return Branches(u, resistance, np.isin(u, flat), gain=gain, maximum=(resistance[n], u[n]))
+    return Branches(
+        u=u,
+        resistance=resistance,
+        extremum=np.isin(u, flat),
+        gain=gain,
+        maximum=(resistance[n], u[n]),
+    )
 
 
 def speed_nodes(law: LawTable) -> Floats:

@@ -500,7 +500,9 @@ def steady(
     maximum = (
         None if gained or law.elastic or law.coupled is not None else branches(law, 0.0).maximum
     )
-    reasons = Diagnosis(loads, scale, rolling, number=count, maximum=maximum, elastic=neutral)
+    reasons = Diagnosis(
+        loads=loads, scale=scale, states=rolling, number=count, maximum=maximum, elastic=neutral
+    )
     found = Steady(existing, reasons, labels)
     warn_of_contact(on_slope, np.asarray(found.V) if labels else found.V)
     return found

@@ -187,7 +187,15 @@ def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
 
         # where log2 a_T reaches the largest that is evaluated
         low = pole + slope / (FARTHEST + own)
-        return ShiftCurve(material, low, math.inf, temperature_of, slope, pole, own)
+        return ShiftCurve(
+            material=material,
+            low=low,
+            high=math.inf,
+            temperature_of=temperature_of,
+            slope=slope,
+            pole=pole,
+            own=own,
+        )
     theta, a_T = _sampled(shift, reference, vertical)
     log2 = np.log2(a_T)
     if (rises := np.flatnonzero(np.diff(log2) > _ROUNDING)).size:
@@ -410,7 +418,9 @@ def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:
     a_T, root_b: a_T and sqrt(b_T) at the m temperatures, (m,) each, dimensionless.
     """
     prony = body.prony.slower(a_T.clip(1e-90, 1e90))  # beyond, M is 0 and times are refused
-    return Solid(body.E * root_b**2, body.nu, prony, body.T_ref, body.thickness)
+    return Solid(
+        E=body.E * root_b**2, nu=body.nu, prony=prony, T_ref=body.T_ref, thickness=body.thickness
+    )
 
 
 def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
@@ -524,13 +534,13 @@ def heat_states(
         # a V of 1 says that the speed is given and one load is found; speeds come with each call
         loads = loads_of(scene, force, torque, driven["slope"], V=np.ones(shape))
     return HeatStates(
-        roller,
-        (scene.table if loads is None else scene.rolling_law) or several,
-        loads,
-        body,
-        curve,
-        remade,
-        shape,
+        roller=roller,
+        law=(scene.table if loads is None else scene.rolling_law) or several,
+        loads=loads,
+        body=body,
+        curve=curve,
+        remade=remade,
+        shape=shape,
         **flat,
     )
 

@@ -120,7 +120,13 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     shift = _shift(modes, state, c @ change + excess.sum(axis=1)) + S[0] @ change + s[0].sum()
     # the load is H = z q_1, at the same z
     load = float(change[0] / state.q[0])
-    return Shear(_moments(modes, z, state), free, mirrored, load, float(shift))
+    return Shear(
+        moments=_moments(modes, z, state),
+        free=free,
+        mirrored=mirrored,
+        load=load,
+        shift=float(shift),
+    )
 
 
 def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:

@@ -314,7 +314,9 @@ def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
     k = k0e(beta) / k1e(beta)
     B = np.eye(root.size) + root[:, None] * ((Q.T * k) @ Q) * root
     x = np.linalg.solve(B, np.column_stack([root * e, root[:, None] * Q.T]))
-    return Exponentials(ratio, root, k, x, np.sqrt(modes.J * b) / (beta * k1e(beta)))
+    return Exponentials(
+        ratio=ratio, root=root, k=k, x=x, sigma=np.sqrt(modes.J * b) / (beta * k1e(beta))
+    )
 
 
 def _excess_memory(v: Floats, A: Floats, beta: Floats) -> Any:

@@ -481,11 +481,11 @@ def _law_of(table: Dataset) -> LawGrid:
     t = (delta - middle) / half
     t[[0, -1]] = -1.0, 1.0
     rows = CoupledRows(
-        most,
-        V,
-        t,
-        edges,
-        fields,
+        mu=most,
+        u=V,
+        t=t,
+        edges=edges,
+        fields=fields,
         graded=False,
         fastest=V[-1],
         slips=slips,

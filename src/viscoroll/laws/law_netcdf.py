@@ -218,7 +218,7 @@ def parse_law(content: Content, path: Any) -> LawTable:
             )
             if coefficients.shape[:-1] != (u.size + 2, t.size) or edges.shape != (u.size + 2, 4):
                 raise ValueError(f"its functions have shape {coefficients.shape[:-1]}")
-            rows = CoupledRows(float(numbers["mu"]), u, t, edges, coefficients)
+            rows = CoupledRows(mu=float(numbers["mu"]), u=u, t=t, edges=edges, fields=coefficients)
             law = coupled_table(given, rows)
         elif kind == COVER:
             functions = np.moveaxis(coefficients, -1, 0)

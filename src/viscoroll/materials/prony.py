@@ -1,8 +1,7 @@
 """Linear viscoelastic materials as Prony series: :class:`Prony`, one or many, in relaxation and in
 creep form.
 
-With moduli divided by the long-time modulus and times in units of a time T_ref of the user's
-choice,
+With moduli divided by the long-time modulus, and times in units of T_ref, which the user chooses,
 
     E(t) = 1 + sum E_i exp(-a_i t)   a_i = 1/tau_i     alpha = 1 + sum E_i
     J(t) = 1 - sum J_j exp(-b_j t)   b_j = 1/T_j       1/alpha = 1 - sum J_j
@@ -42,8 +41,7 @@ from .prony_forms import (
     modes_of_relaxation,
 )
 
-#: difference of 1/alpha and 1 - sum J that rounding of the strengths explains, for each mode and
-#: one more
+#: difference of 1/alpha and 1 - sum J by rounding of the strengths, for each mode and one more
 _AGREEMENT = 1e-14
 
 
@@ -562,8 +560,10 @@ def series_of_alpha(alpha: float) -> Prony:
     c = np.array([(alpha - 1.0) / alpha] if alpha > 1.0 else [])  # no mode of an elastic material
     one = np.ones(c.shape)
     series = Prony._make(True, c, one, alpha)
-    # takes the place of the cached property, which would convert the series
-    series.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, None])
+    # in place of the cached property, which would convert the series
+    series.modes = Modes(
+        alpha=alpha, a=alpha * one, b=1.0 * one, E=alpha * c, J=c, gap=(alpha * c)[:, None]
+    )
     return series
 
 

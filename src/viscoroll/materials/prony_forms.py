@@ -76,7 +76,7 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     # zero j less pole: of the pole at 0 that is b_j, of the others b_j - a_i, at [i, j]
     b = gaps[..., 0, :].copy()
     gap = np.ascontiguousarray(np.swapaxes(-gaps[..., 1:, :], -1, -2))
-    return Modes(alpha, a, b, E, _strengths(gap, alpha, -1) / b, gap)
+    return Modes(alpha=alpha, a=a, b=b, E=E, J=_strengths(gap, alpha, -1) / b, gap=gap)
 
 
 def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
@@ -92,7 +92,7 @@ def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
     a = b + np.diagonal(gap, axis1=-2, axis2=-1)
-    return Modes(alpha, a, b, _strengths(gap, alpha, -2) / a, J, gap)
+    return Modes(alpha=alpha, a=a, b=b, E=_strengths(gap, alpha, -2) / a, J=J, gap=gap)
 
 
 def _rate_differences(times: NDArray) -> Floats:

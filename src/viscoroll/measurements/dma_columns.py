@@ -217,14 +217,14 @@ def columns_of(
             unit = overruling.get(name) or unit or defaults.get(name, "")
             columns.append(
                 Column(
-                    index,
-                    heading,
-                    name,
-                    _quantity_of_column(name),
-                    mode,
-                    log,
-                    unit or _QUANTITIES[name]["assumed"],
-                    bool(unit),
+                    position=index,
+                    heading=heading,
+                    name=name,
+                    quantity=_quantity_of_column(name),
+                    mode=mode,
+                    log=log,
+                    unit=unit or _QUANTITIES[name]["assumed"],
+                    stated=bool(unit),
                 )
             )
         elif index in owners:

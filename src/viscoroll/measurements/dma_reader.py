@@ -355,11 +355,11 @@ def read_dma(
             "them, or write 'Temperature 20 °C' above each"
         )
     record = DynamicModuli(
-        omega,
-        storage,
-        loss,
-        temperature,
-        strain,
+        omega=omega,
+        storage=storage,
+        loss=loss,
+        temperature=temperature,
+        strain=strain,
         mode=mode,
         notes=tuple(notes),
         **_origin(path, taken),

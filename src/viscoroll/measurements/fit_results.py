@@ -186,8 +186,14 @@ class SeriesFit(Result):
         """
         source = self.source or f"{self.points} points"
         errors = tuple(zip(self.admissible.rate, self.admissible.error))
+        low, high = self.band
         return Measured(
-            *self.band, self.largest_misfit, source, errors, getattr(self, "strain", None)
+            low=low,
+            high=high,
+            misfit=self.largest_misfit,
+            source=source,
+            M_error=errors,
+            strain=getattr(self, "strain", None),
         )
 
     def material(

@@ -172,7 +172,13 @@ def identify(
             "False in the Cylinder (in a file: coupled = false in [cylinder]), for the fast law, "
             "whose error cylinder.validity(V) states",
         )
-    problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
+    problem = Problem(
+        cylinder=cylinder,
+        unknowns=unknowns,
+        records=records,
+        robust=check_bool("robust", robust),
+        shifts=shifts,
+    )
     # a standard deviation that is estimated needs one degree of freedom
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:

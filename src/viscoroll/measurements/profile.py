@@ -310,8 +310,16 @@ class Likelihood:
             # low and high are factors of this value: the combination is ln(product) but for a
             # constant, to first order where a coordinate is no logarithm
             value = math.prod(abs(values[name]) ** p for name, p in exponents.items())
-            ends = math.exp(low - centre), math.exp(high - centre)
-            found.append(Product(exponents, value, *ends, near, limits))
+            found.append(
+                Product(
+                    powers=exponents,
+                    value=value,
+                    low=math.exp(low - centre),
+                    high=math.exp(high - centre),
+                    near=near,
+                    limited_by=limits,
+                )
+            )
         return found
 
     def _combinations_by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
@@ -446,7 +454,13 @@ class ProfileWalk:
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
             limits.append([] if d is None else self.limiting_bounds(last.u))
         within = np.array([each.u for each in self.visited if self.is_below(each.chi2, 1.0)])
-        return Profile(ends, limits, pieces, min(self.visited, key=attrgetter("chi2")), within)
+        return Profile(
+            ends=ends,
+            limited_by=limits,
+            pieces=pieces,
+            best=min(self.visited, key=attrgetter("chi2")),
+            within=within,
+        )
 
     def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
         """Find the distance of the combination at which chi2 has risen to the bound.

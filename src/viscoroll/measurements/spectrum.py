@@ -510,7 +510,9 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
             change = _moments(series, math.sqrt(E / fit.E), V) / M - 1.0
             found.append([E, series.alpha, *change])
     spectra = np.reshape(found, (2 * n, 2 + n))
-    return AdmissibleSpectra(rate, V, M, spectra[:, 2:], E=spectra[:, 0], alpha=spectra[:, 1])
+    return AdmissibleSpectra(
+        rate=rate, V=V, M=M, M_changes=spectra[:, 2:], E=spectra[:, 0], alpha=spectra[:, 1]
+    )
 
 
 def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Floats:

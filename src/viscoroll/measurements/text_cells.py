@@ -236,7 +236,15 @@ def cut_lines(text: list[str], separator: str) -> list[Line]:
             comment = line != text[number - 1]  # a mark was taken off
             if any(cells):
                 numeric = not comment and is_row_of_numbers(cells)
-                found.append(Line(number, line.strip(), cells, comment, numeric))
+                found.append(
+                    Line(
+                        number=number,
+                        text=line.strip(),
+                        cells=cells,
+                        comment=comment,
+                        numeric=numeric,
+                    )
+                )
     return found
 
 
@@ -354,7 +362,10 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     differing = next((f"{unit} and {row}" for _, unit, _ in ways if _differ(unit, row)), "")
     return [
         Reading(
-            " ".join(name.split()), differing or unit or row, log, sure or bool(row and not unit)
+            name=" ".join(name.split()),
+            unit=differing or unit or row,
+            log=log,
+            sure=sure or bool(row and not unit),
         )
         for name, unit, sure in ways
         if name

@@ -175,14 +175,14 @@ def read_table(
             "commas or blanks",
         )
     layout = _Layout(
-        path,
-        lines,
-        separator,
-        mode(widths),
-        f"separated by {SEPARATORS[separator]}",
-        is_heading_line,
-        is_title,
-        footers,
+        path=path,
+        lines=lines,
+        separator=separator,
+        width=mode(widths),
+        cut=f"separated by {SEPARATORS[separator]}",
+        is_heading_line=is_heading_line,
+        is_title=is_title,
+        footers=footers,
     )
     heads = layout.heads()
     parts = [layout.part(*ends) for ends in pairwise([*heads, len(lines)])]
@@ -201,7 +201,16 @@ def read_table(
         [cell for row in rows for cell in row.cells], "," if separator == "," else ""
     )
     without_headings = lines[heads[0]].number == starts[0]
-    return Table(path, headings, units, rows, starts, without_headings, decimal, titles)
+    return Table(
+        path=path,
+        headings=headings,
+        units=units,
+        rows=rows,
+        starts=starts,
+        without_headings=without_headings,
+        decimal=decimal,
+        titles=titles,
+    )
 
 
 class _Layout(NamedTuple):

@@ -161,7 +161,7 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
         )
     linear = name.split(":")[0] in _LINEAR
     unit = max(abs(start), _UNIT * (high - low)) if linear else None
-    unknown = Unknown(name, start, low, high, unit)
+    unknown = Unknown(name=name, start=start, low=low, high=high, unit=unit)
     if prior is None:
         return unknown
     try:

@@ -194,7 +194,9 @@ class _Sampled:
         self.largest = max(self.largest, largest)
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
-        piece = Piece(start, stop, np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far)
+        piece = Piece(
+            start=start, stop=stop, terms=np.zeros(TERMS), largest=0.0, error=largest, so_far=so_far
+        )
         if largest <= zero:
             return piece, None
         # still 0 at the start and at the point _RISE after it: cut where it rises
@@ -307,7 +309,7 @@ def fit_callable(
         samples = max(math.ceil(end / resolve), SAMPLES)
     # at the middle of as many equal parts of the time
     times = end * (np.arange(samples) + 0.5) / samples
-    sampled = _Sampled(name, function, low, _SHARE * rtol, times)
+    sampled = _Sampled(name=name, function=function, low=low, share=_SHARE * rtol, times=times)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
     starts = np.array([*(piece.start for piece in pieces), end])
     starts[0] = 0.0  # a jump there leaves one value before it

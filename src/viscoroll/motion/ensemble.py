@@ -424,7 +424,7 @@ def ensemble(
     check_choice("method", method, "auto", "flow", "integrate")
     start, drive, labels = strip_units(
         (V0, omega0),
-        Drive(force, torque, slope, brake, drag, omega, V),
+        Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V),
         units,
     )
     if speed is not None:
@@ -434,7 +434,14 @@ def ensemble(
         start,
         drive,
         times[-1],
-        SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested),
+        SolverOptions(
+            rtol=rtol,
+            rest=rest,
+            max_steps=max_steps,
+            resolve=resolve,
+            unsteady=unsteady,
+            rested=rested,
+        ),
     )
     inputs, count = _broadcast_inputs(problem, drive.numbers)
     problem.warn_of_start(start)
@@ -445,13 +452,13 @@ def ensemble(
     if ends and "V" not in names:
         names = (*names, "V")
     batch = Batch(
-        problem,
-        inputs,
-        np.broadcast_to(problem.immobile, (count,)),
-        times / scale["t"],
-        names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
-        thread_count(threads),
-        "motions" if check_bool("progress", progress) else None,
+        problem=problem,
+        inputs=inputs,
+        immobile=np.broadcast_to(problem.immobile, (count,)),
+        times=times / scale["t"],
+        rows=names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
+        threads=thread_count(threads),
+        progress="motions" if check_bool("progress", progress) else None,
     )
     try:
         found, about = solve_batch(batch, method, speed)

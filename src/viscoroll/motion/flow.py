@@ -149,11 +149,11 @@ def load(path: Path, parameters: MapParameters) -> FlowMap | None:
         if not np.array_equal(data["parameters"], _numbers(parameters)):
             raise ValueError("it was made for other parameters")
         return FlowMap(
-            parameters,
-            int(data["first"]),
-            data["table"],
-            tuple(data["errors"].tolist()),
-            str(data["problem"]),
+            parameters=parameters,
+            first=int(data["first"]),
+            table=data["table"],
+            errors=tuple(data["errors"].tolist()),
+            problem=str(data["problem"]),
         )
 
     return load_kept(path, "the cached flow map cannot be used ({}) and is built again", read)
@@ -276,8 +276,16 @@ def build_map(parameters: MapParameters, octave: int, threads: int | None = None
     )
     if new_map.slow_rate == 0.0:
         return replace(new_map, problem="an elastic cylinder never slows down")
-    law = law_table(parameters[0]).record
-    problem = FlowProblem(*parameters, law, new_map.slow_rate, threads)
+    material, kappa, mu, j = parameters
+    problem = FlowProblem(
+        material=material,
+        kappa=kappa,
+        mu=mu,
+        j=j,
+        law=law_table(material).record,
+        slow_rate=new_map.slow_rate,
+        threads=threads,
+    )
     parts = flow_layout.views(new_map.table)
     try:
         with np.errstate(all="ignore"):  # what is not finite is refused
@@ -408,7 +416,10 @@ def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
         Returns a :class:`FlowResult` of one motion with the rows V, omega, x, angle, slip_loss,
         rolling_loss.
         """
-        return look_up_ensemble(new_map, Motions(1.0, 0.0, V0, omega0, times, _MEASURED_ROWS))
+        return look_up_ensemble(
+            new_map,
+            Motions(gamma=1.0, rest=0.0, V0=V0, omega0=omega0, t=times, rows=_MEASURED_ROWS),
+        )
 
     # 800 decay times: V has fallen below the smallest double
     at_rest = flow(np.array([0.0, 800.0 * decay]))
@@ -516,7 +527,15 @@ def look_up_ensemble(
     count = np.broadcast(V0, omega0).size  # one of the two may be a single value
     result = FlowResult.empty(len(motions.rows), count, times.size)
     motions = motions._replace(V0=V0, omega0=omega0, t=times, rows=np.array(motions.rows, np.int64))
-    flow = Flow(chosen.table, chosen.first, *chosen.parameters[1:], chosen.slow_rate)
+    _, kappa, mu, j = chosen.parameters
+    flow = Flow(
+        table=chosen.table,
+        first=chosen.first,
+        kappa=kappa,
+        mu=mu,
+        j=j,
+        slow_rate=chosen.slow_rate,
+    )
     run_blocks(
         partial(look_up_motions, flow, motions, result),
         count,

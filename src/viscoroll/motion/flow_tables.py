@@ -274,7 +274,9 @@ def fill_manifold(problem: FlowProblem, parts: flow_layout.FlowTables) -> SlowMa
     x, angle, loss = to_go
     speeds = NODES.powers(V), NODES.powers(delta)
     slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.kappa)
-    slow = SlowManifold(rows, speeds, (x, angle), loss, NODES.powers(slow_log))
+    slow = SlowManifold(
+        rows=rows, speeds=speeds, path=(x, angle), loss=loss, slow_log=NODES.powers(slow_log)
+    )
     parts.slow[: len(V)] = np.hstack([interleave_pairs(*speeds), interleave_pairs(x, angle), loss])
     parts.manifold[:] = interleave_pairs(
         slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log))

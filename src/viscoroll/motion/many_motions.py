@@ -171,12 +171,12 @@ def _solve_by_flow_map(
     if not error <= rtol:  # true of NaN too
         return None
     motions = Motions(
-        scene.gamma * unit * unit,  # an acceleration times a time squared
-        threshold * unit,
-        V0,
-        omega0,
-        batch.times / unit,
-        tuple((STATES + LOSSES).index(name) for name in rows),
+        gamma=scene.gamma * unit * unit,  # an acceleration times a time squared
+        rest=threshold * unit,
+        V0=V0,
+        omega0=omega0,
+        t=batch.times / unit,
+        rows=tuple((STATES + LOSSES).index(name) for name in rows),
     )
     found = look_up_ensemble(chosen, motions, threads=batch.threads, progress=batch.progress)
     if unit == 1.0:

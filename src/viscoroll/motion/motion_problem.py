@@ -219,17 +219,17 @@ def make_problem(
             **many, **{"a gain, V or omega of a Feedback,": functions.gains[0].squeeze()}
         )
     return MotionProblem(
-        roller,
-        scene,
-        drive,
-        functions,
-        V0,
-        omega0,
-        immobile,
-        last,
+        roller=roller,
+        scene=scene,
+        drive=drive,
+        functions=functions,
+        V0=V0,
+        omega0=omega0,
+        immobile=immobile,
+        end=last,
         # a step ends at every corner
-        (rtol, threshold, max_steps + functions.corners),
-        unsteady,
+        limits=(rtol, threshold, max_steps + functions.corners),
+        unsteady=unsteady,
         driven=unsteady or functions is not UNDRIVEN,
     )
 

@@ -562,14 +562,23 @@ def roll(
     units = scale_of(roller)
     times = output_times(t, units)
     start, drive, _ = strip_units(
-        (V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units
+        (V0, omega0),
+        Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V),
+        units,
     )
     problem = make_problem(
         roller,
         start,
         drive,
         times[-1],
-        SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested),
+        SolverOptions(
+            rtol=rtol,
+            rest=rest,
+            max_steps=max_steps,
+            resolve=resolve,
+            unsteady=unsteady,
+            rested=rested,
+        ),
         single=True,
     )
     problem.warn_of_start(start)

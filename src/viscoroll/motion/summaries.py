@@ -96,13 +96,13 @@ class Histogram(msgspec.Struct):
         mean = self.mean + distance * (other.count / count)
         between = distance * distance * (self.count * (other.count / count))
         return Histogram(
-            bins,
-            self.counts_in(bins) + other.counts_in(bins),
-            count,
-            mean,
-            self.spread + other.spread + between,
-            min(self.low, other.low),
-            max(self.high, other.high),
+            bins=bins,
+            counts=self.counts_in(bins) + other.counts_in(bins),
+            count=count,
+            mean=mean,
+            spread=self.spread + other.spread + between,
+            low=min(self.low, other.low),
+            high=max(self.high, other.high),
         )
 
     def counts_in(self, bins: NDArray[np.int32]) -> Integers:

@@ -441,7 +441,15 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     # blocks of the worker that has most of them, rounded up
     motions_a_worker = min(-(-run.blocks // workers) * run.block, run.settings.n)
     seconds = seconds * motions_a_worker / trial + law_seconds
-    return Estimate(run, workers, trial, seconds, memory, stored, law_seconds)
+    return Estimate(
+        run=run,
+        workers=workers,
+        trial=trial,
+        seconds=seconds,
+        memory=memory,
+        stored=stored,
+        law_seconds=law_seconds,
+    )
 
 
 def _time_of_laws(run: Run) -> float:

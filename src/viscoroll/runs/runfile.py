@@ -333,7 +333,7 @@ def read_run(path: FilePath) -> Run:
         check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
     digest = _digest(settings, times, content, materials, inputs)
-    run = Run(path, text, settings, inputs, times, digest)
+    run = Run(path=path, text=text, settings=settings, inputs=inputs, t=times, digest=digest)
     if not settings.summaries:
         raise section_error(
             path, "run", "summaries", "summaries = []: must name at least one quantity"

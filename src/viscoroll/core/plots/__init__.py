@@ -165,7 +165,7 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
     middle = levels.size // 2
     for n in range(middle):
         text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
-        grey = _GREYS[min(n, 2)]
+        grey = _GREYS[min(n, len(_GREYS) - 1)]
         axes.fill_between(t, values[n], values[-1 - n], color=grey, linewidth=0.0, label=text)
     if levels.size % 2:
         axes.plot(t, values[middle], ".-", color="black", label=f"{100 * levels[middle]:g} %")
