@@ -362,8 +362,8 @@ def is_unloaded(segment, drive):
     drive: Drive, of which ``segments`` and ``prescribed`` are read.
     Returns False with a prescribed speed, even if it is 0.
     """
-    for row in drive.segments[segment:]:
-        if _sum_of_moduli(row, DRIVE_FORCE, N_DRIVE_FUNCTIONS) > 0.0:
+    for n in range(segment, drive.segments.shape[0]):
+        if _sum_of_moduli(drive.segments[n], DRIVE_FORCE, N_DRIVE_FUNCTIONS) > 0.0:
             return False
     return drive.prescribed == NOT_PRESCRIBED
 

@@ -558,8 +558,8 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
         # As before the first motion, so that no bit depends on which motion came before: NaN for
         # outputs that are not reached; 0 for column 0 of the matrices and for the drive of an
         # undriven motion, which nobody writes.
-        for row in quantities:
-            fill(np.nan, row)
+        for row in range(N_OUTPUTS):
+            fill(np.nan, quantities[row])
         for array in (nodes, p_matrix, d_matrix):
             fill(0.0, array)
         fill(1.0, nodes[ROW_ONES : ROW_ONES + ROW_LENGTH])

@@ -17,7 +17,7 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   Radau nodes.
 """
 
-from ..numerics.intrinsics import by_value
+from ..numerics.intrinsics import by_reference, by_value
 from ..numerics.jit import inline_kernel, kernel
 from ..records import DRIVE_BRAKE, PRESCRIBED_V, State
 from .collocation import (
@@ -133,10 +133,10 @@ def evaluate_event_functions(step, regime, work):
     others.  Returns nothing.
     """
     nodes = work.nodes
-    # A tuple, not a reference: LLVM would read its fields again after each number that is stored.
-    scene = by_value(work.scene)
+    # a copy, as LLVM would read ``work`` itself again after each number that is stored
+    scene = by_reference(by_value(work.scene))
     rest = work.options.rest_speed
-    overlap = BRANCH_OVERLAP if scene.law.table is None else TABLE_BRANCH_OVERLAP
+    overlap = BRANCH_OVERLAP if by_value(scene.law).table is None else TABLE_BRANCH_OVERLAP
     for i in range(N + 1):
         V = nodes[ROW_V + i]
         omega_or_d = nodes[ROW_OMEGA_OR_D + i]
@@ -373,7 +373,7 @@ def _event_function(event, v, regime, work):
         return max(abs(V), abs(omega_or_d)) - work.options.rest_speed
     if event == OMEGA_ZERO:
         return regime.spin_sign * (1.0 + creepage(V, omega_or_d, work.scene))
-    return stick_edge_function(V, omega_or_d, regime, by_value(work.scene))
+    return stick_edge_function(V, omega_or_d, regime, work.scene)
 
 
 @kernel
@@ -393,10 +393,10 @@ def refine_event(event, v, regime, work):
     threshold.
     Returns the position v, a float in [0, 2]; for all other events ``v`` unchanged.
     """
-    # Twice OMEGA_ZERO, as numba needs tuples of one length.
-    if event not in (
-        (STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)
-    ):
+    refined = event == OMEGA_ZERO
+    if regime.full_slip:
+        refined = event == STICK_EDGE or event == BELOW_REST_SPEED
+    if not refined:
         return v
     # the difference quotient is ``difference`` over 2 _SECANT_OFFSET
     difference = _event_function(event, v + _SECANT_OFFSET, regime, work)
@@ -424,10 +424,12 @@ def _event_scale(event, nodes):
     """
     smallest, largest = row_range(event, nodes)
     largest = max(largest, -smallest)
-    if event in (STICK_EDGE, OMEGA_ZERO, BELOW_REST_SPEED):
+    # ``in`` would compile a function of numba's
+    if event == STICK_EDGE or event == OMEGA_ZERO or event == BELOW_REST_SPEED:
         return max(largest, row_range(ROW_SPEED, nodes)[1])
     if event == BRAKE_RELEASE:
-        return max(largest, row_range(ROW_DRIVE + ROW_LENGTH * DRIVE_BRAKE, nodes)[1] ** 2)
+        brake = row_range(ROW_DRIVE + ROW_LENGTH * DRIVE_BRAKE, nodes)[1]
+        return max(largest, brake * brake)
     return largest
 
 

@@ -18,8 +18,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
   under a brake; whether the brake holds omega at 0.
-- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion; a tuple,
-  or a reference of which :func:`.intrinsics.by_value` loads the law as a tuple.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion; a
+  reference, of which :func:`.intrinsics.by_value` loads the law as a tuple.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
   holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
   Radau nodes.

@@ -27,7 +27,7 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 import numpy as np
 
-from ..numerics.intrinsics import by_value
+from ..numerics.intrinsics import by_reference, by_value
 from ..numerics.jit import inline_kernel, kernel
 from ..records import (
     DIRECTION_REVERSED,
@@ -155,7 +155,7 @@ def record_switch(code, step_state, work):
     """
     nodes = work.nodes
     switches = work.switches
-    n = int(nodes[N_RECORDED])  # a count that is stored as a double, beside the other numbers
+    n = np.int64(nodes[N_RECORDED])  # a count that is stored as a double, beside the other numbers
     if n < switches.shape[0]:
         switches[n, 0] = step_state.tau / work.scene.gamma
         switches[n, 1] = code
@@ -295,8 +295,8 @@ def _evaluate_integrands(regime, work):
     ROW_INTEGRANDS on are written, also those that are 0 as nothing drives.  Returns nothing.
     """
     nodes = work.nodes
-    # A tuple, not a reference: LLVM would read its fields again after each number that is stored.
-    values = by_value(work)
+    # a copy, as LLVM would read ``work`` itself again after each number that is stored
+    values = by_reference(by_value(work))
     direction_over_gamma = regime.direction / values.scene.gamma
     for i in range(N + 1):
         load = load_at_node(i, regime, values)

@@ -269,13 +269,12 @@ def partial_slip_rates(V, d, load, regime, scene):
     load: Load, the drive at the time; all fields are read.
     regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under
     a brake.
-    scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`; law, moments_differ,
-    kappa, mu > 0 and gamma are read.
+    scene: Scene, of which ``law``, moments_differ, kappa, mu > 0 and gamma are read.
     Returns Rates, dimensionless, with the derivatives of partial slip: the second unknown is d and
     the weight V.  Under strong friction (:func:`has_strong_friction`) p is V, with the derivatives
     of V'.
     """
-    law = scene.law
+    law = by_value(scene.law)
     mu = scene.mu
     sign = regime.sigma
     k = 0.5 * scene.mu / scene.kappa
@@ -432,9 +431,7 @@ def full_slip_rates(V, omega, load, regime, scene):
     load: Load, the drive at the time; all fields are read.
     regime: Regime, of full slip; sigma is the sign of Q, spin_sign that of omega under a brake.
     scene: Scene, of which kappa, mu, moments_differ and ``law`` are read, the law of the pair of
-    materials of this motion (:class:`.law_record.Law`).  It is a tuple of numbers and arrays, not
-    a reference (:func:`by_value`): the caller stores numbers in a loop, after each of which LLVM
-    would read the fields of a reference again.
+    materials of this motion (:class:`.law_record.Law`).
     Returns Rates with all derivatives, dimensionless: the second unknown is omega, the weight is 1,
     p is V.  All are finite, at V = 0 too.
     """
@@ -446,9 +443,8 @@ def full_slip_rates(V, omega, load, regime, scene):
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
     on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)  # Q is constant
     # Full slip is the edge d = sigma of a table, which also knows what it is at V < 0.
-    moments = table_state(
-        V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table
-    )
+    table = by_value(scene.law).table
+    moments = table_state(V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, table)
     M_half_space = moments.half_space
     M_cylinder = moments.cylinder
     V_rate = load.inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
@@ -485,7 +481,8 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
     omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
     load: Load, the drive at the time; all fields are read.
     regime: Regime; ``full_slip`` selects the function, which also reads sigma and spin_sign.
-    scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`.
+    scene: Scene, of which the fields that either function names are read.  A caller that stores
+    numbers in a loop passes a copy (:mod:`.intrinsics`).
     Returns Rates, dimensionless.  In full slip p is V, the second unknown omega, the weight of its
     equation 1.  In partial slip p is the unknown proportional to V + j omega (V itself under strong
     friction), the second unknown d, the weight V.  The derivatives in V and in the second unknown
@@ -505,12 +502,11 @@ def evaluate_rhs(state, load, regime, scene):
     state: State, the unknowns, in the direction of the regime.
     load: Load, the drive at the time; all fields are read.
     regime: Regime; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
-    scene: Scene, of which ``law``, moments_differ, kappa, mu and, in partial slip, gamma are read:
-    a reference (:mod:`.intrinsics`), one address to pass, or a tuple.
+    scene: Scene, of which ``law``, moments_differ, kappa, mu and, in partial slip, gamma are read.
     Returns Rates, dimensionless, as :func:`full_slip_rates` or :func:`partial_slip_rates` returns
     them.
     """
-    return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
+    return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, scene)
 
 
 @kernel

@@ -43,7 +43,7 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 import numpy as np
 
-from ..numerics.intrinsics import by_value
+from ..numerics.intrinsics import by_reference, by_value
 from ..numerics.jit import inline_kernel, kernel
 from ..records import State
 from .collocation import (
@@ -310,8 +310,8 @@ def _evaluate_residuals(refactor, step, regime, work):
     where V is 0 in partial slip.
     Returns nothing.
     """
-    # A tuple, not a reference: LLVM would read its fields again after each number that is stored.
-    values = by_value(work)
+    # a copy, as LLVM would read ``work`` itself again after each number that is stored
+    values = by_reference(by_value(work))
     nodes = work.nodes
     half_h = 0.5 * step.h
     # D x: slopes of the interpolant; the value of node 0 is subtracted, which changes no slope but

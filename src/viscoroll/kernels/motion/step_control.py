@@ -23,6 +23,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
 """
 
+import math
+
 import numpy as np
 
 from ..law.law_record import ALPHA, E0
@@ -251,8 +253,9 @@ def estimate_error(step, regime, work):
         if has_strong_friction(load_at_node(0, regime, work), regime, work.scene):
             error = max(error - _STRONG_FRICTION_ROUNDING * work.scene.mu * step.h, 0.0)
     # As for d below: where V relaxes to its equilibrium within the step, its error does so too.
-    if unlikely(-nodes[ROW_P_DIAGONAL + N] > _RELAXED_V) and regime.full_slip and step.undriven:
-        error /= -nodes[ROW_P_DIAGONAL + N]
+    relaxation = -nodes[ROW_P_DIAGONAL + N]
+    if unlikely(relaxation > _RELAXED_V) and regime.full_slip and step.undriven:
+        error /= relaxation
     error *= dV_dp  # From here on an error of V; ``variation`` too.
     # by how much p' varies between the nodes at which the equations are met
     smallest = largest = nodes[ROW_P_RATE + 1]
@@ -344,7 +347,7 @@ def moderate_speed(scene):
 
     scene: Scene, of which kappa > 0 and e0 in the marks of ``law`` are read.
     """
-    return 2.0 ** (scene.law.marks[E0] + _ROWS_BELOW_LONGEST_TIME) / scene.kappa
+    return math.ldexp(1.0, scene.law.marks[E0] + _ROWS_BELOW_LONGEST_TIME) / scene.kappa
 
 
 @kernel
@@ -376,7 +379,7 @@ def _time_to_reach_V(V_change, step_state, regime, work):
     V_rate = max(V_rate, 0.0)
     # V_rate t + V_rate_slope t^2/2 = V_change, solved for the smaller t > 0 in the form without
     # cancellation.
-    discriminant = V_rate**2 + 2.0 * V_rate_slope * V_change
+    discriminant = V_rate * V_rate + 2.0 * V_rate_slope * V_change
     if discriminant < 0.0:  # V does not reach V_change: the step ends at its maximum.
         return -V_rate / V_rate_slope
     # At d = 1 both rates may be 0: 1e-300 makes the time very large then, not a division by 0.
@@ -433,7 +436,8 @@ def first_step_length(stick_formed, step_state, regime, work):
         # V/(4 feedback) is the relaxation time of d at d = 0 with H = 1, where the slope of 2
         # feedback x^2 is 4 feedback.  A rate of 0 makes d_scale and the length 0; 1e-300 keeps 0/0
         # away.
-        return min(h, _ONSET_CHANGE * d_scale * V / max(rate, 1e-300), V / (4.0 * feedback))
+        h = min(h, _ONSET_CHANGE * d_scale * V / max(rate, 1e-300))
+        return min(h, V / (4.0 * feedback))
     return min(h, _FIRST_CHANGE * V / V_rate) if V_rate > 0.0 else h
 
 

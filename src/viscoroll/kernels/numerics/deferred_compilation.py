@@ -37,6 +37,9 @@ _OF_NUMBERS = frozenset(
         types.Omitted,
     )
 )
+#: numba's signatures of calls with such arguments, by function and types.  Some, as of ``min``,
+#: stand for a function that numba compiles: it is compiled once in a process, not in each whole.
+_signatures: dict[Any, Any] = {}
 #: Values of numba's statements that contain variables; those of its class Inst alone have methods.
 _WITH_VARIABLES = (ir.Inst, list, tuple, dict)
 #: Passes of numba that search a kernel for what kernels do not have: closures, overloads to be
@@ -73,13 +76,12 @@ def _shorter_front_end(typing, target):
     from numba.core.postproc import PostProcessor, VariableLifetime
     from numba.core.transforms import canonicalize_cfg
 
-    found: dict[Any, Any] = {}
     plain = types.Function.get_call_type
     every = PostProcessor.run
 
     def get_call_type(function, context, args, kws):
         """Return numba's signature of a call; a call of the same function with numbers of the same
-        types is resolved once.
+        types is resolved once in a process.
 
         function : numba's type of the function or operator that is called.
         context : numba's typing context.
@@ -87,9 +89,9 @@ def _shorter_front_end(typing, target):
         """
         if kws or not _OF_NUMBERS.issuperset(map(type, args)):
             return plain(function, context, args, kws)
-        if (function, args) not in found:
-            found[function, args] = plain(function, context, args, kws)
-        return found[function, args]
+        if (function, args) not in _signatures:
+            _signatures[function, args] = plain(function, context, args, kws)
+        return _signatures[function, args]
 
     def process(processor, emit_dels=False, extend_lifetimes=False):
         """Bring the blocks of a kernel into numba's canonical order, after a pass has changed them.

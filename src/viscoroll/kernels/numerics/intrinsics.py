@@ -12,7 +12,9 @@ arrays, and returns nothing.
 **Records by reference.**  Calls pass the address of a record, one number, where numba passes every
 field of a tuple.  A field is loaded when it is read; a record in a record is passed by reference
 too.  The record exists as long as the kernel that made the reference runs.  Its arrays belong to
-the caller of that kernel.
+the caller of that kernel.  After each number that a loop stores LLVM would read the fields again:
+such a loop takes a reference to a copy of its own, ``by_reference(by_value(record))``, which no
+store can change and LLVM keeps in registers.
 
 **Assignments to arrays**, element by element: numba's own would prepare for shapes that differ, and
 compile longer.
@@ -283,17 +285,11 @@ def _lower_reference(context, builder, signature, arguments):
 
 
 def _lower_value(context, builder, signature, arguments):
-    """Return instructions that load a record from its reference; a record that is a value already
-    stays.
+    """Return instructions that load a record from its reference.
 
-    context, builder, signature, arguments : of numba's lowering of (record or reference).
+    context, builder, signature, arguments : of numba's lowering of (reference).
     """
-    kind = signature.args[0]
-    return (
-        _load(context, builder, kind.record, arguments[0])
-        if isinstance(kind, _ReferenceType)
-        else arguments[0]
-    )
+    return _load(context, builder, signature.return_type, arguments[0])
 
 
 def _lower_pointer(context, builder, signature, arguments):
@@ -301,18 +297,10 @@ def _lower_pointer(context, builder, signature, arguments):
     return context.make_array(signature.args[0])(context, builder, arguments[0]).data
 
 
-def _value_signature(kind):
-    """Return numba's signature of :func:`by_value` for a reference or a record, whose type is
-    ``kind``.
-    """
-    return (kind.record if isinstance(kind, _ReferenceType) else kind)(kind)
-
-
 #: record -> a reference to it.
 by_reference = make_intrinsic(_lower_reference, lambda record: _ReferenceType(record)(record), None)
-#: reference -> the record as a value, for loops that store: after each store LLVM would read a
-#: reference again.
-by_value = make_intrinsic(_lower_value, _value_signature, None)
+#: reference -> the record as a value.
+by_value = make_intrinsic(_lower_value, lambda reference: reference.record(reference), None)
 #: contiguous vector -> pointer to its numbers, valid while the vector exists; read and written by
 #: index.
 data_pointer = make_intrinsic(
