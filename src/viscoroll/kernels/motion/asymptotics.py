@@ -132,11 +132,15 @@ def find_equilibrium(state, regime, noise, step_state, work):
     V = state.V
     tolerance = max(_NEAR_EQUILIBRIUM * work.options.rtol, _NEAR_ROUNDING)
     if regime.full_slip:
-        # Feedback of omega on V' or on omega', or a V' that does not decrease with V (or is NaN).
-        if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
-            return False, state
-        # omega approaches V, or 0 under a brake: the regime will end.
-        if regime.sigma * rates.weighted_rate < 0.0 or regime.spin_sign * rates.weighted_rate < 0.0:
+        # Feedback of omega on V' or on omega', or a V' that does not decrease with V (or is NaN);
+        # or omega approaches V, or 0 under a brake: the regime will end.
+        if (
+            rates.dp_rate_dd != 0.0
+            or rates.drate_dd != 0.0
+            or not rates.dp_rate_dV < 0.0
+            or regime.sigma * rates.weighted_rate < 0.0
+            or regime.spin_sign * rates.weighted_rate < 0.0
+        ):
             return False, state
         V_off = rates.p_rate / rates.dp_rate_dV  # distance of V from its equilibrium; p is V here
         # -noise/(dp'/dV) is above 0: the distance that an error ``noise`` of p' explains
@@ -196,8 +200,10 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     if not steady:
         return False, state, step_state
     state = equilibrium
-    rates = current_rates(state, regime, step_state, work)
-    omega_change = rates.weighted_rate * (end - step_state.tau) if regime.full_slip else 0.0
+    omega_change = 0.0
+    if regime.full_slip:
+        rates = current_rates(state, regime, step_state, work)
+        omega_change = rates.weighted_rate * (end - step_state.tau)
     nodes = work.nodes
     # One step to the end of the segment, whose nodes and dense output are written here, so that
     # outputs and quadratures are those of any step.
@@ -261,7 +267,7 @@ def free_decay(work):
     scene = work.scene
     functions = evaluate_moments(0.0, scene)
     reaction = reaction_at_rest(scene)
-    L, delta_0 = rest_limits(scene)
+    L, delta_0 = rest_limits(scene, 1.0)
     # Q_V = 0, as on rows Q is 0 at d = 0; creep_V = 0, as the change of delta_0 with V is left out
     rows = SlowLaw(
         half_space=functions.half_space,
@@ -378,12 +384,9 @@ def coast_to_end(state, regime, step_state, work):
         moves = tau[column] <= end
         # exp(-rate time) - 1 without cancellation for short times; ``decay`` is the exponential,
         # which for long times, where the sum would cancel, is computed itself.
-        expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
-        decay = (
-            1.0 + expm1_decay
-            if expm1_decay > -0.5
-            else np.exp(-rate * (tau[column] - step_state.tau))
-        )
+        exponent = -rate * (min(tau[column], end) - step_state.tau)
+        expm1_decay = np.expm1(exponent)
+        decay = 1.0 + expm1_decay if expm1_decay > -0.5 else np.exp(exponent)
         V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
         speeds = (
             direction * V,
