@@ -314,6 +314,7 @@ def holding_margin(tau, segment, work):
     It is -1.0 where a prescribed speed has a slope other than 0.
     """
     scene = work.scene
+    law = by_value(scene.law)
     # direction 1, and no brake that holds omega, as inverse_inertia = 0 stands for a prescribed one
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
@@ -322,7 +323,7 @@ def holding_margin(tau, segment, work):
     brake = load.brake * (1.0 + _HOLDING_ROUNDING)
     reaction = reaction_at_rest(scene)
     if load.inverse_mass == 0.0:  # V is prescribed to stay 0
-        if by_value(scene.law).cover_rows is None:
+        if law.cover_rows is None:
             return mu + brake - abs(load.torque)
         torque = max(abs(load.torque) - brake, 0.0)
         excess = -reaction.cylinder_excess / scene.mu
@@ -335,10 +336,10 @@ def holding_margin(tau, segment, work):
     # Modulus of the torque that is left for the brake.
     rest = abs(np.copysign(torque, load.force) + load.torque)
     # Of half-spaces loads in balance cancel to exactly 0; of a cover to rounding.
-    noise = 0.0 if by_value(scene.law).cover_rows is None else _HOLDING_ROUNDING * torque
+    noise = 0.0 if law.cover_rows is None else _HOLDING_ROUNDING * torque
     # A smaller ``rest`` counts as 0: without a brake the margin is then 0, which holds.
     margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE + noise else 0.0))
-    return balance_of_table(load, scene.kappa, mu, margin, by_value(scene.law).table)
+    return balance_of_table(load, scene.kappa, mu, margin, law.table)
 
 
 @kernel

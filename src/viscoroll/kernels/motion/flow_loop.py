@@ -367,8 +367,8 @@ def _partial_slip_state(tau, stick, asymptote, total_loss, level, flow):
         V, delta = manifold_pair(now, 0, flow.table)
         if level >= PATH:
             x, angle = manifold_path(asymptote.slow_log, span, flow.slow_rate, flow.table)
-            x = x + asymptote.x
-            angle = angle + asymptote.angle
+            x += asymptote.x
+            angle += asymptote.angle
         if level >= LOSS:
             loss = total_loss - remaining_slip_loss(now, flow.table)
     return Output(
