@@ -192,37 +192,6 @@ def _effective_load(load, spin_sign, scene):
     )
 
 
-@inline_kernel
-def _local_maximum_of_residual(load, scene):
-    """Return the d < 0 at which the residual of the equation of d has its local maximum; it is a
-    cubic in d.
-
-    With Q = mu (2 d + d^2), k = mu L/(2 kappa) and W = inverse_inertia + (1 + delta_0) inverse_mass
-    the terms with d are
-
-        -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
-
-    where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so
-    that the larger zero of the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the
-    residual is quadratic, and its only maximum is returned.  The moments of a cover by its traction
-    and c are left out here: the result bounds a search.
-
-    load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
-    scene: Scene, of which kappa, mu > 0 and ``law`` are read.
-    Returns d there, a float, dimensionless, which may lie outside [-1, 0]; -inf where the cubic
-    decreases for all d.
-    """
-    L, delta_0 = rest_limits(scene, 1.0)
-    stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
-    first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
-    second = -stiffness - 2.0 * scene.mu * load.inverse_mass
-    # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0;
-    # first/(sqrt(discriminant) - second) is that root without cancellation, and for inverse_mass =
-    # 0 too.
-    discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
-    return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
-
-
 @kernel
 def solve_d_at_departure(load, spin_sign, scene):
     """Solve the equation of d at V = 0, of the module, by a bracketed Newton iteration.
@@ -230,6 +199,16 @@ def solve_d_at_departure(load, spin_sign, scene):
     Where friction is strong (mu > 2 kappa for half-spaces) the residual need not decrease
     everywhere: a root above the d of omega = 0 is taken if the residual is positive there, else one
     between that d and the local maximum below it.  If omega is held at 0, d is that of omega = 0.
+
+    The residual is a cubic in d < 0: with Q = mu (2 d + d^2), k = mu L/(2 kappa) and W =
+    inverse_inertia + (1 + delta_0) inverse_mass the terms with d are
+
+        -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
+
+    where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so
+    that the larger zero of the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the
+    residual is quadratic, with one maximum.  The moments of a cover by its traction and c are left
+    out of the cubic, as its maximum bounds a search.
 
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which a brake acts; 0 without one, or where it holds
@@ -252,7 +231,18 @@ def solve_d_at_departure(load, spin_sign, scene):
         if residual > 0.0:
             low = d_zero
         else:  # The residual may have a maximum below this d.
-            low = min(max(low, _local_maximum_of_residual(load, scene)), d_zero)
+            L, delta_0 = rest_limits(scene, 1.0)
+            stiffness = load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)
+            stiffness = stiffness * 2.0 * scene.kappa / L
+            first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
+            second = -stiffness - 2.0 * scene.mu * load.inverse_mass
+            # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with
+            # second < 0; first/(sqrt(discriminant) - second) is that root without cancellation, and
+            # for inverse_mass = 0 too.  Without a root the cubic decreases for all d.
+            discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
+            if discriminant > 0.0:
+                low = max(low, first / (np.sqrt(discriminant) - second))
+            low = min(low, d_zero)
             high = d_zero
     if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
         return False, 0.0

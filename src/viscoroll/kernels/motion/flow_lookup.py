@@ -489,24 +489,3 @@ def layer_state(family, v, asymptote, elapsed, level, flow):
         loss = layer_value(table, LAYER_LOSS, place) * V0 * V0
     V = V0 * np.exp(layer_value(table, LAYER_LN_V, place))
     return V, layer_value(table, LAYER_CREEP, place), x, angle, loss
-
-
-@kernel
-def slow_log_at_rest(rest, flow):
-    """Return the slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest
-    threshold.
-
-    rest : float, threshold, > 0; one above half the highest V of a start, HIGHEST/kappa, is
-    replaced by that half.
-    flow : Flow, of the scene; ``table`` and kappa are read.
-    Returns the slow logarithm, a float, after four steps of a fixed-point iteration for V (a
-    negative delta counts as 0, as |V| then is the larger speed); below the tables, where delta
-    counts as 0, that of their lowest V plus the logarithm of the ratio of the speeds.
-    """
-    rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
-    # the fixed point of V = rest/(1 + max(delta(V), 0)), where the larger speed is the threshold
-    for _ in range(4):
-        v = flow.kappa * V
-        V = rest / (1.0 + max(manifold_at_speed(v, flow.table)[1] if v >= LOWEST else 0.0, 0.0))
-    v = flow.kappa * V
-    return manifold_at_speed(max(v, LOWEST), flow.table)[0] + np.log(min(v, LOWEST) / LOWEST)

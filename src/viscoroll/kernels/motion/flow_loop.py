@@ -85,7 +85,6 @@ from .flow_lookup import (
     read_onset,
     remaining_slip_loss,
     slide_distance,
-    slow_log_at_rest,
     speed_at_slide_time,
 )
 
@@ -508,7 +507,21 @@ def look_up_motions(flow, motions, result, start, stop):
             level = LOSS
         elif level == SPEEDS and (row == OUT_X or row == OUT_ANGLE):
             level = PATH
-    request = Request(level, rest, slow_log_at_rest(rest, flow) if rest > 0.0 else 0.0)
+    # The slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold;
+    # of one above half the highest V of a start, that half.
+    rest_slow_log = 0.0
+    if rest > 0.0:
+        highest = min(rest, 0.5 * HIGHEST / flow.kappa)
+        v = flow.kappa * highest
+        # the fixed point of V = rest/(1 + max(delta(V), 0)): a negative delta counts as 0, as |V|
+        # then is the larger speed, and below the tables delta counts as 0
+        for _ in range(4):
+            delta = manifold_at_speed(v, flow.table)[1] if v >= LOWEST else 0.0
+            v = flow.kappa * (highest / (1.0 + max(delta, 0.0)))
+        # below the tables that of their lowest V plus the logarithm of the ratio of the speeds
+        rest_slow_log = manifold_at_speed(max(v, LOWEST), flow.table)[0]
+        rest_slow_log += np.log(min(v, LOWEST) / LOWEST)
+    request = Request(level, rest, rest_slow_log)
     for i in range(start, stop):
         V = element(V0, i)
         omega = element(omega0, i)

@@ -119,39 +119,6 @@ def brake_at_zero_omega(may_hold, state, regime, step_state, work):
 
 
 @kernel
-def comes_to_rest(state, regime, step_state, work):
-    """Return whether full slip ends at rest: V is 0 where the stick zone would form, so that omega
-    is 0 too.
-
-    V counts as 0 by one of two thresholds:
-
-    - omega is 0, as the brake holds it or it is prescribed to be 0 at this time: V is at most
-      max(1e-14, 10 rtol) times the largest V at the nodes of the step, as the event is located with
-      the error of the step.
-    - in all other cases: V is at most 1e-14 times V at the left end of the step, as rounding leaves
-      it.
-
-    state: State, at the event.
-    regime: Regime, of full slip; ``locked`` is read.
-    step_state: StepState, at the event; tau and segment are read.
-    work: Workspace, with V at the nodes of the step that ends there, the Drive and rtol.
-    Returns a bool; True at equality with a threshold, and so where V is exactly 0.
-    """
-    # An omega prescribed to be 0 at this time acts like a brake that holds it.
-    if not regime.locked and not (
-        work.drive.prescribed == PRESCRIBED_OMEGA
-        and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
-    ):
-        return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
-    # With omega = 0 slip ends at V = 0, to the tolerance of the step.
-    return (
-        state.V
-        <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol)
-        * row_range(ROW_V, work.nodes)[1]
-    )
-
-
-@kernel
 def reverse_direction(regime):
     """Return the Regime with the opposite direction, in which the signs of slip and omega are
     opposite too.
@@ -216,9 +183,13 @@ def impose_prescribed_speed(state, regime, step_state, work):
 def apply_event(event, state, regime, step_state, work):
     """Return state and regime after an event, in the unknowns of the new regime.
 
-    - STICK_EDGE in full slip: the cylinder comes to rest (:func:`comes_to_rest`), or partial slip
-      begins with d = sigma; a prescribed omega is then imposed (:func:`impose_prescribed_speed`)
-      where V changes at least as fast as omega.
+    - STICK_EDGE in full slip: the cylinder comes to rest if V is 0, so that omega is 0 too, or
+      partial slip begins with d = sigma; a prescribed omega is then imposed
+      (:func:`impose_prescribed_speed`) where V changes at least as fast as omega.  V counts as 0 up
+      to 1e-14 times V at the left end of the step, as rounding leaves it.  Where omega is 0, as the
+      brake holds it or it is prescribed to be 0 at this time, V counts as 0 up to max(1e-14, 10
+      rtol) times the largest V at the nodes of the step, as the event is located with the error of
+      the step.
     - STICK_EDGE in partial slip: full slip begins with the same sigma and with the omega of the
       state.
     - DELTA_ZERO: sigma changes its sign, d stays.
@@ -238,13 +209,22 @@ def apply_event(event, state, regime, step_state, work):
     work: Workspace, with V at the nodes of the step that ends there; Scene, Drive and rtol are read
     too.
     Returns (whether the cylinder moves, State, Regime): it does not move where it comes to rest, or
-    where V is 0 in the partial slip that begins; where it comes to rest by V_ZERO or by
-    :func:`comes_to_rest`, State and Regime are those that were passed.
+    where V is 0 in the partial slip that begins; where it comes to rest State and Regime are those
+    that were passed.
     """
     full_slip = regime.full_slip
     sigma = regime.sigma
     if event == STICK_EDGE and full_slip:
-        if comes_to_rest(state, regime, step_state, work):
+        least = _STICK_ZONE_CLOSED * work.nodes[ROW_V]
+        # An omega prescribed to be 0 at this time acts like a brake that holds it.
+        if regime.locked or (
+            work.drive.prescribed == PRESCRIBED_OMEGA
+            and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
+        ):
+            # With omega = 0 slip ends at V = 0, to the tolerance of the step.
+            least = max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol)
+            least *= row_range(ROW_V, work.nodes)[1]
+        if state.V <= least:
             return False, state, regime
         rates = current_rates(state, regime, step_state, work)
         state = State(state.V, sigma)
