@@ -13,7 +13,7 @@ def test_digits_do_not_depend_on_the_caller():
     """Whoever imports may have set another precision."""
 
     def digits():
-        return Interpolation(radau(9, 1)).powers(), *gauss(28), to_chebyshev(9)
+        return Interpolation(radau(9)).powers(), *gauss(28), to_chebyshev(9)
 
     with decimal.localcontext(decimal.Context(prec=3, rounding=decimal.ROUND_UP)):
         low = digits()

@@ -132,11 +132,15 @@ def find_equilibrium(state, regime, noise, step_state, work):
     V = state.V
     tolerance = max(_NEAR_EQUILIBRIUM * work.options.rtol, _NEAR_ROUNDING)
     if regime.full_slip:
-        # Feedback of omega on V' or on omega', or a V' that does not decrease with V (or is NaN).
-        if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
-            return False, state
-        # omega approaches V, or 0 under a brake: the regime will end.
-        if regime.sigma * rates.weighted_rate < 0.0 or regime.spin_sign * rates.weighted_rate < 0.0:
+        # Feedback of omega on V' or on omega', or a V' that does not decrease with V (or is NaN);
+        # or omega approaches V, or 0 under a brake: the regime will end.
+        if (
+            rates.dp_rate_dd != 0.0
+            or rates.drate_dd != 0.0
+            or not rates.dp_rate_dV < 0.0
+            or regime.sigma * rates.weighted_rate < 0.0
+            or regime.spin_sign * rates.weighted_rate < 0.0
+        ):
             return False, state
         V_off = rates.p_rate / rates.dp_rate_dV  # distance of V from its equilibrium; p is V here
         # -noise/(dp'/dV) is above 0: the distance that an error ``noise`` of p' explains
@@ -196,8 +200,6 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     if not steady:
         return False, state, step_state
     state = equilibrium
-    rates = current_rates(state, regime, step_state, work)
-    omega_change = rates.weighted_rate * (end - step_state.tau) if regime.full_slip else 0.0
     nodes = work.nodes
     # One step to the end of the segment, whose nodes and dense output are written here, so that
     # outputs and quadratures are those of any step.
@@ -208,6 +210,9 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
         initial_slope_known=True,
         undriven=False,
     )
+    omega_change = 0.0
+    if regime.full_slip:
+        omega_change = step.h * current_rates(state, regime, step_state, work).weighted_rate
     for i in range(N + 1):
         nodes[ROW_V + i] = state.V
         nodes[ROW_OMEGA_OR_D + i] = state.omega_or_d + omega_change * NODE_FRACTIONS[i]
@@ -261,7 +266,7 @@ def free_decay(work):
     scene = work.scene
     functions = evaluate_moments(0.0, scene)
     reaction = reaction_at_rest(scene)
-    L, delta_0 = rest_limits(scene)
+    L, delta_0 = rest_limits(scene, 1.0)
     # Q_V = 0, as on rows Q is 0 at d = 0; creep_V = 0, as the change of delta_0 with V is left out
     rows = SlowLaw(
         half_space=functions.half_space,
@@ -283,13 +288,14 @@ def free_decay(work):
         on_axis = 1.0 + slow.reaction_half_space
         on_spin = 1.0 - slow.reaction_cylinder
         inertia = on_spin + spin_inertia * on_axis + n
+        axis_loss = slow.half_space - force
+        spin_loss = slow.cylinder - torque
         if on_axis == 1.0 and on_spin == 1.0:  # half-spaces: the same sum, in another order
             rate = (slow.half_space + slow.cylinder - force - torque) / inertia
         else:
-            axis_loss = on_spin * (slow.half_space - force)
-            rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
-        Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
-        Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
+            rate = (on_spin * axis_loss + on_axis * spin_loss) / inertia
+        Q = (spin_inertia + 0.5 * n) * axis_loss
+        Q = (Q - (1.0 + 0.5 * n) * spin_loss) / inertia
         # Q_V is Q/V at d = 0, so that Q above it means d > 0; at equality both sides serve
         if sigma * (Q - slow.Q_V) >= 0.0:
             break
@@ -352,14 +358,12 @@ def coast_to_end(state, regime, step_state, work):
     of coming to rest, with the numbers of steps unchanged.
     """
     scene = work.scene
-    direction = regime.direction
+    V0 = regime.direction * state.V
     free = free_decay(work)
     rate = free.rate
-    force = free.force
-    torque = free.torque
     omega_over_V = 1.0 + free.delta_0
     creep = state.V * free.creep  # delta - delta_0
-    largest_speed = max(state.V, abs(state.V * (omega_over_V + creep)))
+    largest_speed = max(state.V, abs(V0 * (omega_over_V + creep)))
     tau = work.output_tau
     rest_speed = rest_threshold(step_state.segment, work)
     end = np.inf
@@ -370,31 +374,25 @@ def coast_to_end(state, regime, step_state, work):
     # over tau is V^2/(2 rate): a power of c V^2 takes c/rate times V^2/2.  The loss in slip is of
     # higher order and counts as 0: the loss in rolling is the kinetic energy plus the works of the
     # feedback, negative where it brakes.
-    force_work = force / rate
-    torque_work = torque / rate * omega_over_V
+    force_work = free.force / rate
+    torque_work = free.torque / rate * omega_over_V
     kinetic = 1.0 + scene.j * omega_over_V * omega_over_V
     energies = (0.0, kinetic + force_work + torque_work, force_work, torque_work, 0.0)
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
         # exp(-rate time) - 1 without cancellation for short times; ``decay`` is the exponential,
         # which for long times, where the sum would cancel, is computed itself.
-        expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
-        decay = (
-            1.0 + expm1_decay
-            if expm1_decay > -0.5
-            else np.exp(-rate * (tau[column] - step_state.tau))
-        )
-        V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
-        speeds = (
-            direction * V,
-            direction * (V * (omega_over_V + delta)),
-            delta + free.delta_0 if moves else 0.0,
-        )
-        code = PARTIAL_SLIP if moves else AT_REST
-        write_column(column, speeds, code, (force * direction * V, torque * direction * V), work)
+        exponent = -rate * (min(tau[column], end) - step_state.tau)
+        expm1_decay = np.expm1(exponent)
+        decay = 1.0 + expm1_decay if expm1_decay > -0.5 else np.exp(exponent)
         # Integral of V over t = tau/gamma, and V^2/2 lost so far, V_0^2 (1 - decay^2)/2.
-        distance = -direction * state.V * expm1_decay / (rate * scene.gamma)
-        energy = 0.5 * state.V * state.V * (-expm1_decay * (1.0 + decay) if moves else 1.0)
+        distance = -V0 * expm1_decay / (rate * scene.gamma)
+        energy = 0.5 * V0 * V0 * (-expm1_decay * (1.0 + decay) if moves else 1.0)
+        V = V0 * (decay if moves else 0.0)
+        delta = creep * decay
+        speeds = V, V * (omega_over_V + delta), delta + free.delta_0 if moves else 0.0
+        code = PARTIAL_SLIP if moves else AT_REST
+        write_column(column, speeds, code, (free.force * V, free.torque * V), work)
         write_quadrature(column, 0, distance, work)
         # without the creepage beyond delta_0, which is of the order of V: its angle is negligible
         write_quadrature(column, 1, distance * omega_over_V, work)

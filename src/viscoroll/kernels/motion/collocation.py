@@ -23,14 +23,12 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   full slip (:mod:`rhs`).  p' is its slope in tau.
 """
 
-from decimal import Decimal
-
 import numpy as np
 
 from ..numerics.interpolation import Interpolation, radau
 from ..numerics.intrinsics import fma
 from ..numerics.jit import inline_kernel, kernel
-from ..numerics.simd import LANES, broadcast, fma4, load, store
+from ..numerics.simd import LANES, broadcast, fma4, make_load, store
 from ..records import N_NODE_FUNCTIONS, N_QUADRATURES, Regime, State, Step, StepState
 
 # --- Radau IIA collocation on [-1, 1], with the left end as node 0 ---
@@ -44,46 +42,40 @@ ROW_LENGTH = N + 1
 assert ROW_LENGTH == 2 * LANES
 
 #: Interpolation through nodes 1 ... N.
-_INNER = Interpolation(radau(N, 1))
+_INNER = Interpolation(radau(N))
 #: Interpolation through all nodes; node 0 is at -1.
-_ALL = Interpolation((Decimal(-1), *_INNER.exact))
+_ALL = Interpolation((-1, *_INNER.exact))
 #: Positions t of all nodes on [-1, 1].
 NODES = _ALL.nodes
 #: Positions of all nodes as fractions of the step.
 NODE_FRACTIONS = 0.5 * (1.0 + NODES)
 #: Weights of the values at nodes 1 ... N in the integral from -1 to 1.
-QUADRATURE_WEIGHTS = _INNER.integrals(_INNER.exact)[N - 1].copy()
+QUADRATURE_WEIGHTS = _INNER.integrals([1])[0]
 #: Weights of the values at nodes 1 ... N in the value that their interpolant has at -1.
-EXTRAPOLATION_TO_START = _INNER.values([Decimal(-1)])[0]
+EXTRAPOLATION_TO_START = _INNER.values([-1])[0]
 
 
 def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
     """Divide polynomials in t that vanish at t = -1 by 1 + t, by synthetic division.
 
     powers: (n, m), coefficients of m polynomials in ascending powers of t.
-    Returns (n - 1, m), coefficients of the quotients in ascending powers; the remainder of a
-    polynomial that does not vanish at -1 is dropped.
+    Returns (n, m), coefficients of the quotients in ascending powers, the last of which is 0; the
+    remainder of a polynomial that does not vanish at -1 is dropped.
     """
-    found = np.zeros_like(powers[1:])
+    found = np.zeros_like(powers)
     quotient = 0.0  # coefficient of the quotient, from the highest power down
     for k in range(len(powers) - 1, 0, -1):
         found[k - 1] = quotient = powers[k] - quotient
     return found
 
 
-def _column_major(matrix: np.ndarray) -> np.ndarray:
-    """Return a matrix, (ROW_LENGTH, ROW_LENGTH), as a vector, column after column, as the kernels
-    load it.
-    """
-    return np.ascontiguousarray(matrix.T).ravel()
-
-
+# Kernels load the matrices as vectors, column after column.
 #: The matrix takes values at all nodes to slopes of the interpolant there; its row of node 0 is 0,
 #: as no slope is needed there.
-DIFFERENTIATION = _column_major(np.vstack([np.zeros(ROW_LENGTH), _ALL.slopes(_INNER.exact)]))
+DIFFERENTIATION = np.vstack([np.zeros(ROW_LENGTH), _ALL.slopes(_INNER.exact)]).ravel("F")
 #: The matrix takes values at all nodes, less that at node 0, to the coefficients of
 #: :func:`evaluate_dense_output`.
-_DENSE_MATRIX = _column_major(np.vstack([_divide_by_linear(_ALL.powers()), np.zeros(ROW_LENGTH)]))
+_DENSE_MATRIX = _divide_by_linear(_ALL.powers()).ravel("F")
 #: Coefficients [power, node] of the integrals from t = 0 of the polynomials that are 1 at one node
 #: and 0 at the others.
 _INTEGRALS = np.vstack(
@@ -91,13 +83,16 @@ _INTEGRALS = np.vstack(
 )
 #: The matrix takes values at all nodes, less that at node 0, to the coefficients of
 #: :func:`.output._quadrature_at`.
-INTEGRAL_MATRIX = _column_major(
-    np.vstack([_divide_by_linear(_divide_by_linear(_INTEGRALS)), np.zeros(ROW_LENGTH)])
-)
+INTEGRAL_MATRIX = _divide_by_linear(_divide_by_linear(_INTEGRALS))[:-1].ravel("F")
 #: Identity matrix, column by column.
 _IDENTITY = np.eye(ROW_LENGTH).ravel()
 #: Matrix of 1 off the diagonal and 0 on it, column by column.
 _OFF_DIAGONAL = 1.0 - _IDENTITY
+#: Added to a product it changes no bit of it, nor its sign: fma4(a, b, this) is the product a b of
+#: columns, for which LLVM makes a multiplication.
+_NOTHING = -0.0
+#: (array, start) -> a row, or a column of a matrix, as two vectors.
+_load_column = make_load(ROW_LENGTH // LANES)
 
 
 @inline_kernel
@@ -113,14 +108,12 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     are read before.  A NaN or inf in the row makes the whole product NaN or inf, even where the
     matrix is 0.  Returns nothing.
     """
-    # ``low`` has rows 0 ... 3 of the product, ``high`` rows 4 ... 7: a column times a number each
-    low = high = broadcast(0.0)
+    # two vectors, rows 0 ... 3 of the product and rows 4 ... 7: a column times a number each
+    product = broadcast(0.0), broadcast(0.0)
     for k in range(ROW_LENGTH):
-        x = broadcast(values[row + k] - offset)
-        low = fma4(load(matrix, ROW_LENGTH * k), x, low)
-        high = fma4(load(matrix, ROW_LENGTH * k + LANES), x, high)
-    store(result, target, low)
-    store(result, target + LANES, high)
+        column = _load_column(matrix, ROW_LENGTH * k)
+        product = fma4(column, broadcast(values[row + k] - offset), product)
+    store(result, target, product)
 
 
 @inline_kernel
@@ -138,27 +131,14 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     matrix: pointer to ROW_LENGTH^2 numbers, of which columns 1 ... N are written; column 0 keeps
     its values, 0 from the start of the motion.  Returns nothing.
     """
-    # weights of rows 0 ... 3 and 4 ... 7; row 0 of DIFFERENTIATION and of columns 1 ... N of the
-    # identity is 0, so that the entry of node 0 becomes 0
-    low = load(nodes, weights)
-    high = load(nodes, weights + LANES)
+    # row 0 of DIFFERENTIATION and of columns 1 ... N of the identity is 0, so that the entry of
+    # node 0 becomes 0
+    factors = _load_column(nodes, weights)
     for k in range(1, ROW_LENGTH):
         column = ROW_LENGTH * k
+        weighted = fma4(_load_column(DIFFERENTIATION, column), factors, broadcast(_NOTHING))
         subtracted = broadcast(-nodes[diagonal + k])
-        store(
-            matrix,
-            column,
-            fma4(subtracted, load(_IDENTITY, column), load(DIFFERENTIATION, column) * low),
-        )
-        store(
-            matrix,
-            column + LANES,
-            fma4(
-                subtracted,
-                load(_IDENTITY, column + LANES),
-                load(DIFFERENTIATION, column + LANES) * high,
-            ),
-        )
+        store(matrix, column, fma4(subtracted, _load_column(_IDENTITY, column), weighted))
 
 
 @inline_kernel
@@ -179,23 +159,16 @@ def _eliminate(i, matrix):
     # From each other column k, in which a_ik is set to 0, a_ik times the new column i is
     # subtracted.
     pivot = broadcast(1.0 / matrix[column + i])
-    off_low = load(_OFF_DIAGONAL, column)
-    off_high = load(_OFF_DIAGONAL, column + LANES)
-    low = fma4(load(_IDENTITY, column), pivot, load(matrix, column) * off_low * pivot)
-    high = fma4(
-        load(_IDENTITY, column + LANES), pivot, load(matrix, column + LANES) * off_high * pivot
-    )
+    nothing = broadcast(_NOTHING)
+    off = _load_column(_OFF_DIAGONAL, column)
+    others = fma4(_load_column(matrix, column), off, nothing)
+    new = fma4(_load_column(_IDENTITY, column), pivot, fma4(others, pivot, nothing))
     for k in range(1, ROW_LENGTH):
         if k != i:
             factor = broadcast(-matrix[ROW_LENGTH * k + i])
-            store(matrix, ROW_LENGTH * k, fma4(factor, low, load(matrix, ROW_LENGTH * k) * off_low))
-            store(
-                matrix,
-                ROW_LENGTH * k + LANES,
-                fma4(factor, high, load(matrix, ROW_LENGTH * k + LANES) * off_high),
-            )
-    store(matrix, column, low)
-    store(matrix, column + LANES, high)
+            others = fma4(_load_column(matrix, ROW_LENGTH * k), off, nothing)
+            store(matrix, ROW_LENGTH * k, fma4(factor, new, others))
+    store(matrix, column, new)
 
 
 @inline_kernel
@@ -403,7 +376,7 @@ def last_output_tau(work):
 
     work: Workspace, of the motion, with at least one output time.
     """
-    return work.output_tau[work.output_tau.size - 1]
+    return work.output_tau[-1]
 
 
 @inline_kernel
@@ -454,13 +427,12 @@ def set_step_length(h, n_trials, step_state):
     step_state: StepState, the present one; its other fields stay, the number of accepted steps
     among them.
     """
-    tau, next_output, segment, n_steps, n_accepted, _ = step_state
     return StepState(
-        tau=tau,
-        next_output=next_output,
-        segment=segment,
-        n_steps=n_steps + n_trials,
-        n_accepted=n_accepted,
+        tau=step_state.tau,
+        next_output=step_state.next_output,
+        segment=step_state.segment,
+        n_steps=step_state.n_steps + n_trials,
+        n_accepted=step_state.n_accepted,
         h=h,
     )
 

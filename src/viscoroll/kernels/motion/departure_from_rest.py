@@ -49,6 +49,7 @@ from .motion_law import (
     reaction_at_rest,
     rest_limits,
 )
+from .regimes import change_brake
 from .table_law import balance_of_table
 
 #: Code of a departure: the cylinder stays at rest for a time.
@@ -124,30 +125,31 @@ def _d_at_zero_omega(scene):
 
 
 @kernel
-def _spin_against_brake(load, scene):
-    """Return what omega does under a brake while V grows from 0: the sign with which it grows, and
-    whether it stays 0.
+def _regime_under_brake(load, regime, scene):
+    """Return the Regime with the state of a brake while V grows from 0: the sign with which omega
+    grows, and whether it stays 0.
 
     The brake can hold omega in partial slip only where friction is so strong that d at omega = 0 is
     above -1 (:func:`_d_at_zero_omega`); it holds it where the torque that the traction there leaves
     is at most its own.
 
     load: Load, at V = 0, of a segment with a brake, whose torque may be 0 at the time.
+    regime: Regime of partial slip, in whose direction ``load`` is.
     scene: Scene, of which kappa, mu > 0, ``law`` and, for the added mass (n > -1 at V = 0), gamma
     are read.
-    Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at
-    most -1, as omega then grows with V, else that of the torque that is left, 0.0 for none; held, a
-    bool, whether the brake holds omega at 0 (also where both torques are equal), in which case the
-    sign is 0.0.
+    Returns ``regime`` with ``spin_sign``, the sign of omega: 1.0 where d at omega = 0 is at most
+    -1, as omega then grows with V, else that of the torque that is left, 0.0 for none; and
+    ``locked``, whether the brake holds omega at 0 (also where both torques are equal), in which
+    case the sign is 0.0.
     """
     d_zero = _d_at_zero_omega(scene)
     load = _effective_load(load, 0.0, scene)  # without the brake, whose torque is compared below
     if d_zero <= -1.0:
-        return 1.0, False
+        return change_brake(regime, 1.0, False)
     # torque that is left at omega = 0: that of the motor less what the traction there takes
     torque = load.torque - pull_at_rest(d_zero, scene)[1]
     locked = abs(torque) <= load.brake
-    return 0.0 if locked else np.sign(torque), locked
+    return change_brake(regime, 0.0 if locked else np.sign(torque), locked)
 
 
 @kernel
@@ -190,37 +192,6 @@ def _effective_load(load, spin_sign, scene):
     )
 
 
-@inline_kernel
-def _local_maximum_of_residual(load, scene):
-    """Return the d < 0 at which the residual of the equation of d has its local maximum; it is a
-    cubic in d.
-
-    With Q = mu (2 d + d^2), k = mu L/(2 kappa) and W = inverse_inertia + (1 + delta_0) inverse_mass
-    the terms with d are
-
-        -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
-
-    where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so
-    that the larger zero of the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the
-    residual is quadratic, and its only maximum is returned.  The moments of a cover by its traction
-    and c are left out here: the result bounds a search.
-
-    load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
-    scene: Scene, of which kappa, mu > 0 and ``law`` are read.
-    Returns d there, a float, dimensionless, which may lie outside [-1, 0]; -inf where the cubic
-    decreases for all d.
-    """
-    L, delta_0 = rest_limits(scene)
-    stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
-    first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
-    second = -stiffness - 2.0 * scene.mu * load.inverse_mass
-    # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with second < 0;
-    # first/(sqrt(discriminant) - second) is that root without cancellation, and for inverse_mass =
-    # 0 too.
-    discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
-    return first / (np.sqrt(discriminant) - second) if discriminant > 0.0 else -np.inf
-
-
 @kernel
 def solve_d_at_departure(load, spin_sign, scene):
     """Solve the equation of d at V = 0, of the module, by a bracketed Newton iteration.
@@ -228,6 +199,16 @@ def solve_d_at_departure(load, spin_sign, scene):
     Where friction is strong (mu > 2 kappa for half-spaces) the residual need not decrease
     everywhere: a root above the d of omega = 0 is taken if the residual is positive there, else one
     between that d and the local maximum below it.  If omega is held at 0, d is that of omega = 0.
+
+    The residual is a cubic in d < 0: with Q = mu (2 d + d^2), k = mu L/(2 kappa) and W =
+    inverse_inertia + (1 + delta_0) inverse_mass the terms with d are
+
+        -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
+
+    where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so
+    that the larger zero of the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the
+    residual is quadratic, with one maximum.  The moments of a cover by its traction and c are left
+    out of the cubic, as its maximum bounds a search.
 
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which a brake acts; 0 without one, or where it holds
@@ -250,7 +231,18 @@ def solve_d_at_departure(load, spin_sign, scene):
         if residual > 0.0:
             low = d_zero
         else:  # The residual may have a maximum below this d.
-            low = min(max(low, _local_maximum_of_residual(load, scene)), d_zero)
+            L, delta_0 = rest_limits(scene, 1.0)
+            stiffness = load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)
+            stiffness = stiffness * 2.0 * scene.kappa / L
+            first = -2.0 * stiffness - load.inverse_mass * load.force - load.prescribed_V_rate
+            second = -stiffness - 2.0 * scene.mu * load.inverse_mass
+            # The maximum is the larger root of first + 2 second d - 3 mu inverse_mass d^2, with
+            # second < 0; first/(sqrt(discriminant) - second) is that root without cancellation, and
+            # for inverse_mass = 0 too.  Without a root the cubic decreases for all d.
+            discriminant = second * second + 3.0 * scene.mu * load.inverse_mass * first
+            if discriminant > 0.0:
+                low = max(low, first / (np.sqrt(discriminant) - second))
+            low = min(low, d_zero)
             high = d_zero
     if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
         return False, 0.0
@@ -312,6 +304,7 @@ def holding_margin(tau, segment, work):
     It is -1.0 where a prescribed speed has a slope other than 0.
     """
     scene = work.scene
+    law = by_value(scene.law)
     # direction 1, and no brake that holds omega, as inverse_inertia = 0 stands for a prescribed one
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
@@ -320,7 +313,7 @@ def holding_margin(tau, segment, work):
     brake = load.brake * (1.0 + _HOLDING_ROUNDING)
     reaction = reaction_at_rest(scene)
     if load.inverse_mass == 0.0:  # V is prescribed to stay 0
-        if by_value(scene.law).cover_rows is None:
+        if law.cover_rows is None:
             return mu + brake - abs(load.torque)
         torque = max(abs(load.torque) - brake, 0.0)
         excess = -reaction.cylinder_excess / scene.mu
@@ -333,10 +326,10 @@ def holding_margin(tau, segment, work):
     # Modulus of the torque that is left for the brake.
     rest = abs(np.copysign(torque, load.force) + load.torque)
     # Of half-spaces loads in balance cancel to exactly 0; of a cover to rounding.
-    noise = 0.0 if by_value(scene.law).cover_rows is None else _HOLDING_ROUNDING * torque
+    noise = 0.0 if law.cover_rows is None else _HOLDING_ROUNDING * torque
     # A smaller ``rest`` counts as 0: without a brake the margin is then 0, which holds.
     margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE + noise else 0.0))
-    return balance_of_table(load, scene.kappa, mu, margin, by_value(scene.law).table)
+    return balance_of_table(load, scene.kappa, mu, margin, law.table)
 
 
 @kernel
@@ -456,53 +449,45 @@ def depart_from_rest(tau, segment, work):
     """
     scene = work.scene
     tau_drive = tau
-    # A drive that holds the cylinder, or is in balance with it to rounding, at ``tau``, where its
-    # segment begins or the cylinder was found to depart: its change tells what follows.
     brake = evaluate_load(tau, segment, REGIME_AT_REST, work).brake
     rounding = _HOLDING_ROUNDING * (scene.mu + brake)
     margin = holding_margin(tau, segment, work)
     if margin >= -rounding and not is_constant(segment, work.drive):
-        # Whether the drive moves the cylinder is decided by its values a little later.
+        # A drive that holds the cylinder at ``tau``, or is in balance with it to rounding: its
+        # values a little later decide whether it moves the cylinder.
         tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
         margin = holding_margin(tau_drive, segment, work)
-    braked = has_brake(segment, work.drive)
+    departure = STAYS_AT_REST, REGIME_AT_REST, 0.0
     if margin >= 0.0:
-        return STAYS_AT_REST, REGIME_AT_REST, 0.0
-    kind = STAYS_AT_REST
-    departure = REGIME_AT_REST
-    d_start = 0.0
+        return departure
+    braked = has_brake(segment, work.drive)
     for direction in (1.0, -1.0):
         regime = Regime(
             full_slip=False, direction=direction, sigma=1.0, spin_sign=0.0, locked=False
         )
         load = evaluate_load(tau_drive, segment, regime, work)
         if braked:
-            spin_sign, locked = _spin_against_brake(load, scene)
-            regime = Regime(
-                full_slip=False, direction=direction, sigma=1.0, spin_sign=spin_sign, locked=locked
-            )
+            regime = _regime_under_brake(load, regime, scene)
             # the load of a locked cylinder has an inverse_inertia of 0
             load = evaluate_load(tau_drive, segment, regime, work)
-        sticks, d = solve_d_at_departure(load, regime.spin_sign, scene)
-        if sticks and kind == ROLLS_OFF:
+        can_roll, d = solve_d_at_departure(load, regime.spin_sign, scene)
+        if can_roll and departure[0] == ROLLS_OFF:
             return AMBIGUOUS, REGIME_AT_REST, 0.0
-        if sticks:
+        if can_roll:
             # The motion departs from d at the present time, where it may be 0: sigma is the sign
             # that d has a little later.
             load = evaluate_load(tau, segment, regime, work)
-            kind = ROLLS_OFF
             d_start = solve_d_at_departure(load, regime.spin_sign, scene)[1]
-            departure = change_slip(regime, False, 1.0 if d >= 0.0 else -1.0)
+            departure = ROLLS_OFF, change_slip(regime, False, 1.0 if d >= 0.0 else -1.0), d_start
             if scene.mu <= 2.0 * scene.kappa:  # The residual decreases: there is no other root.
-                return kind, departure, d_start
+                return departure
     # Where the cylinder may roll off, sliding is a second motion only if its slip exceeds that of
     # the onset of full slip; else any slip in the direction of sigma will do.
-    stick_zone_slip = 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa
+    stays = departure[0] == STAYS_AT_REST
+    stick_zone_slip = 0.0 if stays else 0.5 * scene.mu / scene.kappa
     slides = _slide_from_rest(tau_drive, segment, braked, stick_zone_slip, work)
-    if kind == STAYS_AT_REST:
+    if stays:
         # The added mass acts in partial slip only: it may leave neither regime.
         none = slides[0] == STAYS_AT_REST and added_inertia(0.0, scene)[0] != 0.0
         return (NO_DEPARTURE, REGIME_AT_REST, 0.0) if none else slides
-    return (
-        (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)
-    )
+    return (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else departure

@@ -126,6 +126,8 @@ SHAPES = FlowTables(
 )
 #: Index in the vector at which each table begins.
 STARTS = FlowTables(*(sum(map(prod, SHAPES[:n])) for n in range(len(SHAPES))))
+#: Numbers of a row of each table: of the polynomials over one octave, or of one in the layer.
+ROW_SIZES = FlowTables(*(shape[-1] for shape in SHAPES))
 #: Number of doubles of the vector.
 SIZE = sum(map(prod, SHAPES))
 
@@ -205,21 +207,6 @@ ROWS = 8
 
 
 @inline_kernel
-def write_output(out, column, state):
-    """Write one output state, of any part of a motion, into the rows of the module.
-
-    out : outputs (ROWS, times), of which one column is written, all rows but ROLLING_LOSS.
-    column : int, index of the output time.
-    state : :class:`.records.Output` of floats, whose fields are in the order of the rows: V, omega,
-        distance and angle (times gamma), delta, regime (a code of :mod:`.records`) and loss by
-        slip, dimensionless, with the signs of the motion, not mirrored.
-    Returns nothing.
-    """
-    for row in range(len(state)):
-        out[row, column] = state[row]
-
-
-@inline_kernel
 def write_rest(at, x, angle, loss, out):
     """Write outputs at rest, V = omega = delta = 0 and regime AT_REST, from a column to the last.
 
@@ -228,9 +215,7 @@ def write_rest(at, x, angle, loss, out):
     loss : float, slip loss of all of them.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS.  Returns nothing.
     """
+    state = Output(V=0.0, omega=0.0, x=x, angle=angle, delta=0.0, regime=float(AT_REST), loss=loss)
     for column in range(at, out.shape[1]):
-        write_output(
-            out,
-            column,
-            Output(V=0.0, omega=0.0, x=x, angle=angle, delta=0.0, regime=float(AT_REST), loss=loss),
-        )
+        for row in range(len(state)):
+            out[row, column] = state[row]

@@ -42,12 +42,36 @@ from ..numerics.simd import (
     evaluate_pair,
     evaluate_single,
     fma4,
+    join_lanes,
     make_load,
     unpack,
 )
 from ..records import Asymptote
-from . import flow_layout
-from .flow_layout import LAYER_TERMS, SHAPES, STARTS
+from .flow_layout import (
+    ASYMPTOTE_LOSS,
+    ASYMPTOTE_PATH,
+    ASYMPTOTE_SPLIT,
+    BLOCK,
+    HIGH,
+    LAYER_ANGLE,
+    LAYER_CREEP,
+    LAYER_LN_V,
+    LAYER_LOSS,
+    LAYER_LOW,
+    LAYER_TERMS,
+    LAYER_X,
+    LOW,
+    OCTAVES,
+    ONSET_X,
+    ROW_SIZES,
+    SHAPES,
+    SLIDE_X,
+    SLOW_BINS,
+    SLOW_LOSS,
+    SLOW_PATH,
+    SLOW_WIDTH,
+    STARTS,
+)
 
 #: output level: V and omega alone
 SPEEDS = 0
@@ -56,43 +80,25 @@ PATH = 1
 #: output level: slip loss too
 LOSS = 2
 #: lowest kappa V of the tables
-LOWEST = 2.0**flow_layout.LOW
+LOWEST = 2.0**LOW
 #: highest kappa V of a start, two octaves below the end of the tables, so that quantities that grow
 #: with it stay inside
-HIGHEST = 2.0 ** (flow_layout.HIGH - 2)
+HIGHEST = 2.0 ** (HIGH - 2)
 #: ratio of the sliding time to T below which the difference of X cancels and V is integrated
 #: instead
 _SHORT = 0.02
 #: lower end of the layer coordinate u
-LOWEST_U = 2.0**flow_layout.LAYER_LOW
-_LOWEST_SLOW_LOG = -flow_layout.SLOW_BINS * flow_layout.SLOW_WIDTH
-#: numbers of a row of the table of full slip
-_SLIDE = SHAPES.slide[2]
-#: numbers of a row of the table of onsets
-_ONSET = SHAPES.onset[2]
-#: numbers of a row of the table of speeds over sliding time
-_AFTER = SHAPES.after[2]
-#: numbers of a row of the slow manifold over its slow logarithm
-_SLOW = SHAPES.slow[1]
-#: numbers of a row of the slow manifold over kappa V
-_MANIFOLD = SHAPES.manifold[1]
-#: numbers of a row of the asymptotes
-_ASYMPTOTE_SIZE = SHAPES.asymptote[2]
+LOWEST_U = 2.0**LAYER_LOW
+_LOWEST_SLOW_LOG = -SLOW_BINS * SLOW_WIDTH
 #: octaves of the tables over kappa V
-_SPEED_OCTAVES = flow_layout.HIGH - flow_layout.LOW
-#: octaves of kappa V at onset
-_ONSET_OCTAVES = flow_layout.OCTAVES
-#: octaves of the layer coordinate u
-_LAYER_OCTAVES = SHAPES.layer[2]
+_SPEED_OCTAVES = HIGH - LOW
 #: numbers of the polynomials of one octave of u
 _LAYER = SHAPES.layer[3] * SHAPES.layer[4]
 #: loads the twelve coefficients of the powers of t, that belong to one power of s, as three vectors
 #: of four
 _powers = make_load(LAYER_TERMS // LANES)
-#: nodes of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
-_GAUSS_X = gauss(5)[0]
-#: weights of that rule
-_GAUSS_W = gauss(5)[1]
+#: nodes and weights of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
+_GAUSS_X, _GAUSS_W = gauss(5)
 
 
 @inline_kernel
@@ -101,24 +107,24 @@ def full_slip_integrals(V, level, flow):
     from the map.
 
     V : float, speed of the axis in the mirrored frame (omega > V), of either sign or 0, kappa |V| <
-        2^flow_layout.HIGH, which is not checked.
+        2^HIGH, which is not checked.
     level : SPEEDS, PATH or LOSS: the distance is read from the table from PATH on.
     flow : Flow, of the scene; ``table``, kappa and mu are read.
 
     Returns (T, X, limit): time tau from V = 0 to V, with the sign of V; distance times gamma
     between rest and V, >= 0; delta_star |V|, the least omega - V of full slip, >= 0.  For kappa |V|
-    < 2^flow_layout.LOW, below the table, they are their limits as V -> 0, (V/mu, V^2/(2 mu), mu
+    < 2^LOW, below the table, they are their limits as V -> 0, (V/mu, V^2/(2 mu), mu
     |V|/(2 kappa)), at every level.  In the table X is 0 at level SPEEDS.
     """
     speed = abs(V)
-    row, t, _ = locate_octave(flow.kappa * speed, flow_layout.LOW)
+    row, t, _ = locate_octave(flow.kappa * speed, LOW)
     if row == 0:
         return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
     # row 0 of locate_octave is below the tables, which begin with row 1: first all octaves of V >
     # 0, then as many of V < 0
-    at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * _SLIDE
+    at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * ROW_SIZES.slide
     T, limit = evaluate_pair(flow.table, at, t)[:2]
-    X = evaluate_single(flow.table, at + flow_layout.SLIDE_X, t)[0] if level >= PATH else 0.0
+    X = evaluate_single(flow.table, at + SLIDE_X, t)[0] if level >= PATH else 0.0
     return T if V > 0.0 else -T, X, limit
 
 
@@ -126,20 +132,19 @@ def full_slip_integrals(V, level, flow):
 def speed_at_slide_time(T, flow):
     """Return V in full slip, in the mirrored frame, at a time before or after V = 0.
 
-    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^flow_layout.HIGH,
+    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^HIGH,
     which is not checked.
     flow : Flow, of the scene; ``table``, kappa and mu are read.
 
-    Returns V, a float, with the sign of T; for kappa mu |T| < 2^flow_layout.LOW, below the table,
+    Returns V, a float, with the sign of T; for kappa mu |T| < 2^LOW, below the table,
     its limit mu T for small T.
     """
-    row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), flow_layout.LOW)
+    row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), LOW)
     if row == 0:
         return flow.mu * T
     # |V| over kappa mu |T|: first all octaves of T > 0, then as many of T < 0
-    V = evaluate_single(
-        flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t
-    )[0]
+    at = STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * ROW_SIZES.after
+    V = evaluate_single(flow.table, at, t)[0]
     return V if T > 0.0 else -V
 
 
@@ -187,11 +192,11 @@ def read_onset(I, level, flow):
     x = flow.kappa * abs(I) / (1.0 + flow.j)
     if not LOWEST <= x < HIGHEST:  # True for NaN too.
         return 0.0, 0.0, 0.0
-    row, t, _ = locate_octave(x, flow_layout.LOW)
+    row, t, _ = locate_octave(x, LOW)
     # row - 1, as the tables begin with the octave above LOW; those of V > 0 at the onset are first
-    at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
+    at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * ROW_SIZES.onset
     V, T = evaluate_pair(flow.table, at, t)[:2]
-    X = evaluate_single(flow.table, at + flow_layout.ONSET_X, t)[0] if level >= PATH else 0.0
+    X = evaluate_single(flow.table, at + ONSET_X, t)[0] if level >= PATH else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
@@ -210,46 +215,31 @@ def _locate_on_manifold(slow_log):
     if slow_log >= 0.0:  # Octaves of 1 + slow_log; below 0 bins of one width.
         # 1 is the begin of row 1 for e0 = 0; the octaves follow the bins in the table
         row, t, _ = locate_octave(1.0 + slow_log, 0)
-        return STARTS.slow + (flow_layout.SLOW_BINS + row - 1) * _SLOW, t, 1.0
+        return STARTS.slow + (SLOW_BINS + row - 1) * ROW_SIZES.slow, t, 1.0
     share = 1.0  # the factor
     if slow_log < _LOWEST_SLOW_LOG:
         share = np.exp(slow_log - _LOWEST_SLOW_LOG)
         slow_log = _LOWEST_SLOW_LOG
-    place = (slow_log - _LOWEST_SLOW_LOG) * (1.0 / flow_layout.SLOW_WIDTH)
-    row = min(np.int64(place), flow_layout.SLOW_BINS - 1)  # rounding may leave the end of the bins
-    return STARTS.slow + row * _SLOW, 2.0 * (place - row) - 1.0, share
+    place = (slow_log - _LOWEST_SLOW_LOG) * (1.0 / SLOW_WIDTH)
+    row = np.int64(min(place, SLOW_BINS - 1.0))  # rounding may leave the end of the bins
+    return STARTS.slow + row * ROW_SIZES.slow, 2.0 * (place - row) - 1.0, share
 
 
 @inline_kernel
-def manifold_speeds(slow_log, table):
-    """Return (V, delta) on the slow manifold: speed, > 0 until it underflows to 0, and creepage, of
-    either sign.
-
-    Both are floats; below the table they fall as exp(slow_log).
+def manifold_pair(slow_log, offset, table):
+    """Return two quantities on the slow manifold, which below the table fall as exp(slow_log).
 
     slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not
     checked.
+    offset : int, offset of the pair in a row of the table: 0 or SLOW_PATH.
     table : vector of all tables, ``table`` of Flow.
+    Returns two floats.  At 0 (V, delta): speed, > 0 until it underflows to 0, and creepage, of
+    either sign.  At SLOW_PATH the path that remains to rest, of which :func:`manifold_path` forms
+    differences: (distance, angle), each times gamma, >= 0 for the V > 0 of the mirrored frame.
     """
     at, t, share = _locate_on_manifold(slow_log)
-    V, delta = evaluate_pair(table, at, t)[:2]
-    return share * V, share * delta
-
-
-@inline_kernel
-def _remaining_path(slow_log, table):
-    """Return the path that remains to rest on the slow manifold, of which :func:`manifold_path`
-    forms differences.
-
-    slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not
-    checked.
-    table : vector of all tables, ``table`` of Flow.
-    Returns (distance, angle), floats, each times gamma, >= 0 for the V > 0 of the mirrored frame;
-    below the table they fall as exp(slow_log).
-    """
-    at, t, share = _locate_on_manifold(slow_log)
-    x, angle = evaluate_pair(table, at + flow_layout.SLOW_PATH, t)[:2]
-    return share * x, share * angle
+    a, b = evaluate_pair(table, at + offset, t)[:2]
+    return share * a, share * b
 
 
 @kernel
@@ -269,13 +259,13 @@ def manifold_path(start, span, rate, table):
     """
     end = start - span
     if span > 0.25 * max(1.0 + end, 1.0):
-        x, angle = _remaining_path(start, table)
-        x_left, angle_left = _remaining_path(end, table)
+        x, angle = manifold_pair(start, SLOW_PATH, table)
+        x_left, angle_left = manifold_pair(end, SLOW_PATH, table)
         return x - x_left, angle - angle_left
     # dx = V dtau with dtau = -d(slow logarithm)/rate
     x = angle = 0.0
     for n in range(_GAUSS_X.size):
-        V, delta = manifold_speeds(end + span * _GAUSS_X[n], table)
+        V, delta = manifold_pair(end + span * _GAUSS_X[n], 0, table)
         x += _GAUSS_W[n] * V
         angle += _GAUSS_W[n] * V * (1.0 + delta)
     return x * span / rate, angle * span / rate
@@ -291,18 +281,18 @@ def remaining_slip_loss(slow_log, table):
     table : vector of all tables, ``table`` of Flow.
     """
     at, t, share = _locate_on_manifold(slow_log)
-    return share**3 * evaluate_single(table, at + flow_layout.SLOW_LOSS, t)[0]
+    return share**3 * evaluate_single(table, at + SLOW_LOSS, t)[0]
 
 
 @kernel
 def manifold_at_speed(v, table):
     """Return (slow logarithm, delta) on the slow manifold at a speed, floats, each of either sign.
 
-    v : float, kappa V, from LOWEST to below 2^flow_layout.HIGH; it is not checked.
+    v : float, kappa V, from LOWEST to below 2^HIGH; it is not checked.
     table : vector of all tables, ``table`` of Flow.
     """
-    row, t, _ = locate_octave(v, flow_layout.LOW)
-    return evaluate_pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
+    row, t, _ = locate_octave(v, LOW)
+    return evaluate_pair(table, STARTS.manifold + (row - 1) * ROW_SIZES.manifold, t)[:2]
 
 
 @inline_kernel
@@ -311,7 +301,7 @@ def read_asymptote(family, v, level, flow):
     slip: its asymptote.
 
     family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
-    v : float, kappa V at the onset, from 2^first to below 2^(first + flow_layout.OCTAVES); it is
+    v : float, kappa V at the onset, from 2^first to below 2^(first + OCTAVES); it is
     not checked.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene; ``table`` and ``first`` are read.
@@ -325,17 +315,17 @@ def read_asymptote(family, v, level, flow):
     table = flow.table
     # onsets are tabulated from 2^first on, which is the begin of row 1; PLUS first, then MINUS
     row, t, _ = locate_octave(v, flow.first)
-    at = STARTS.asymptote + (row - 1 + family * _ONSET_OCTAVES) * _ASYMPTOTE_SIZE
+    at = STARTS.asymptote + (row - 1 + family * OCTAVES) * ROW_SIZES.asymptote
     slow_log, rate = evaluate_pair(table, at, t)[:2]
     x = angle = loss = 0.0
     if level >= PATH:
-        x, angle = evaluate_pair(table, at + flow_layout.ASYMPTOTE_PATH, t)[:2]
+        x, angle = evaluate_pair(table, at + ASYMPTOTE_PATH, t)[:2]
     if level >= LOSS:
-        loss = evaluate_single(table, at + flow_layout.ASYMPTOTE_LOSS, t)[0]
+        loss = evaluate_single(table, at + ASYMPTOTE_LOSS, t)[0]
     return Asymptote(
         slow_log=slow_log,
         rate=rate,
-        split=evaluate_single(table, at + flow_layout.ASYMPTOTE_SPLIT, t)[0],
+        split=evaluate_single(table, at + ASYMPTOTE_SPLIT, t)[0],
         x=x,
         angle=angle,
         loss=loss,
@@ -393,7 +383,7 @@ def locate_in_layer(family, v, u, flow):
     """Return the position of a motion in the table of the boundary layer.
 
     family : PLUS or MINUS.
-    v : float, kappa V at the onset, from 2^first to below 2^(first + flow_layout.OCTAVES).
+    v : float, kappa V at the onset, from 2^first to below 2^(first + OCTAVES).
     u : float, layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
     flow : Flow, of the scene; ``first`` is read.
 
@@ -402,10 +392,10 @@ def locate_in_layer(family, v, u, flow):
     That v and u are inside of the table is not checked.
     """
     row, t, _ = locate_octave(v, flow.first)
-    part, s, _ = locate_octave(u, flow_layout.LAYER_LOW)
+    part, s, _ = locate_octave(u, LAYER_LOW)
     # the layout of FlowTables.layer: family, octave of v, octave of u; rows count from 1 in both
     return (
-        STARTS.layer + (((row - 1 + family * _ONSET_OCTAVES) * _LAYER_OCTAVES) + part - 1) * _LAYER,
+        STARTS.layer + ((row - 1 + family * OCTAVES) * SHAPES.layer[2] + part - 1) * _LAYER,
         t,
         s,
     )
@@ -420,13 +410,12 @@ def _evaluate_in_t(p, t):
     """
     square = t * t
     per = broadcast(square * square)  # t^4, the ratio of the powers of successive vectors
-    # a to d: sums of the coefficients of the powers 4 n, 4 n + 1, 4 n + 2 and 4 n + 3, times t^4n.
-    a, b, c, d = unpack(fma4(fma4(p[2], per, p[1]), per, p[0]))
-    return fma(square, fma(t, d, c), fma(t, b, a))
+    # lanes: sums of the coefficients of the powers 4 n, 4 n + 1, 4 n + 2 and 4 n + 3, times t^4n
+    return join_lanes(fma4(fma4(p[2], per, p[1]), per, p[0]), t, square)
 
 
 @inline_kernel
-def layer_value_and_slopes(table, column, at, t, s):
+def layer_value_and_slopes(table, column, place):
     """Return value and slopes of one quantity of the boundary layer after the onset of partial
     slip.
 
@@ -434,16 +423,17 @@ def layer_value_and_slopes(table, column, at, t, s):
     column : int, the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE
         (distance and angle beyond those at constant V0, in units of V0/k0), LAYER_LOSS (slip loss
         divided by V0^2); V0 is V at the onset.
-    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and
-    over u, in [-1, 1].
+    place : (position, t, s) from :func:`locate_in_layer`: int, and the arguments over V at onset
+        and over u, in [-1, 1].
 
     Returns (value, derivative in t at fixed s, derivative in s at fixed t), floats, dimensionless.
     """
-    at += column * flow_layout.BLOCK
+    at, t, s = place
+    at += column * BLOCK
     per = broadcast(s)
     # Horner's scheme in s, of vectors of the coefficients in t: ``value`` of the polynomial,
     # ``rise`` of its derivative in s.
-    value = _powers(table, at + flow_layout.BLOCK - LAYER_TERMS)
+    value = _powers(table, at + BLOCK - LAYER_TERMS)
     rise = value
     for m in range(LAYER_TERMS - 2, 0, -1):
         value = fma4(value, per, _powers(table, at + m * LAYER_TERMS))
@@ -458,17 +448,16 @@ def layer_value_and_slopes(table, column, at, t, s):
 
 
 @kernel
-def layer_value(table, column, at, t, s):
+def layer_value(table, column, place):
     """Return the value alone of one quantity of the boundary layer; the search for an onset needs
     slopes too.
 
     table : vector of all tables, ``table`` of Flow.
     column : int, the quantity, LAYER_LN_V ... LAYER_LOSS, as of :func:`layer_value_and_slopes`.
-    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and
-    over u, in [-1, 1].
+    place : (position, t, s) from :func:`locate_in_layer`, as of the same.
     Returns a float, dimensionless.
     """
-    return layer_value_and_slopes(table, column, at, t, s)[0]
+    return layer_value_and_slopes(table, column, place)[0]
 
 
 @kernel
@@ -488,38 +477,15 @@ def layer_state(family, v, asymptote, elapsed, level, flow):
     """
     table = flow.table
     E = elapsed * asymptote.rate
-    at, t, s = locate_in_layer(family, v, layer_coordinate(E, asymptote.split), flow)
+    place = locate_in_layer(family, v, layer_coordinate(E, asymptote.split), flow)
     V0 = v / flow.kappa
     x = angle = loss = 0.0
     # the table has what exceeds constant V0, in units of V0/k0: E is the path at constant V0
     if level >= PATH:
         scale = V0 / asymptote.rate
-        x = scale * (E + layer_value(table, flow_layout.LAYER_X, at, t, s))
-        angle = scale * (E + layer_value(table, flow_layout.LAYER_ANGLE, at, t, s))
+        x = scale * (E + layer_value(table, LAYER_X, place))
+        angle = scale * (E + layer_value(table, LAYER_ANGLE, place))
     if level >= LOSS:
-        loss = layer_value(table, flow_layout.LAYER_LOSS, at, t, s) * V0 * V0
-    V = V0 * np.exp(layer_value(table, flow_layout.LAYER_LN_V, at, t, s))
-    return V, layer_value(table, flow_layout.LAYER_CREEP, at, t, s), x, angle, loss
-
-
-@kernel
-def slow_log_at_rest(rest, flow):
-    """Return the slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest
-    threshold.
-
-    rest : float, threshold, > 0; one above half the highest V of a start, HIGHEST/kappa, is
-    replaced by that half.
-    flow : Flow, of the scene; ``table`` and kappa are read.
-    Returns the slow logarithm, a float, after four steps of a fixed-point iteration for V (a
-    negative delta counts as 0, as |V| then is the larger speed); below the tables, where delta
-    counts as 0, that of their lowest V plus the logarithm of the ratio of the speeds.
-    """
-    rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
-    # the fixed point of V = rest/(1 + max(delta(V), 0)), where the larger speed is the threshold
-    for _ in range(4):
-        v = flow.kappa * V
-        V = rest / (1.0 + max(manifold_at_speed(v, flow.table)[1] if v >= LOWEST else 0.0, 0.0))
-    v = flow.kappa * V
-    if v >= LOWEST:
-        return manifold_at_speed(v, flow.table)[0]
-    return manifold_at_speed(LOWEST, flow.table)[0] + np.log(v / LOWEST)
+        loss = layer_value(table, LAYER_LOSS, place) * V0 * V0
+    V = V0 * np.exp(layer_value(table, LAYER_LN_V, place))
+    return V, layer_value(table, LAYER_CREEP, place), x, angle, loss

@@ -34,7 +34,9 @@ Terms of this file:
 
 import numpy as np
 
+from ..law.law_functions import locate_octave
 from ..law.law_record import element
+from ..numerics.intrinsics import bits_to_float
 from ..numerics.jit import inline_kernel, kernel
 from ..records import (
     CAME_TO_REST,
@@ -47,10 +49,10 @@ from ..records import (
     Request,
     StickOnset,
 )
-from . import flow_layout
 from .flow_layout import (
     LAYER_CREEP,
     LAYER_END,
+    LAYER_HIGH,
     LAYER_LN_V,
     MINUS,
     OCTAVES,
@@ -62,7 +64,6 @@ from .flow_layout import (
     ROLLING_LOSS,
     ROWS,
     SLIP_LOSS,
-    write_output,
     write_rest,
 )
 from .flow_lookup import (
@@ -78,13 +79,12 @@ from .flow_lookup import (
     layer_value_and_slopes,
     locate_in_layer,
     manifold_at_speed,
+    manifold_pair,
     manifold_path,
-    manifold_speeds,
     read_asymptote,
     read_onset,
     remaining_slip_loss,
     slide_distance,
-    slow_log_at_rest,
     speed_at_slide_time,
 )
 
@@ -105,14 +105,7 @@ _CONVERGED = 1e-7
 #: stiff rate of a motion on the slow manifold: its layer has length 0
 _NO_LAYER = 1e30
 #: upper end of the layer coordinate u, one rounding below the table's edge
-_HIGHEST_U = 2.0**flow_layout.LAYER_HIGH * (1.0 - 2.0**-50)
-
-
-@inline_kernel
-def _clamp(x, low, high):
-    """Return the nearest value to x in [low, high], floats with low < high; low if x is NaN."""
-    x = x if x > low else low
-    return x if x < high else high
+_HIGHEST_U = 2.0**LAYER_HIGH * (1.0 - 2.0**-50)
 
 
 @kernel
@@ -145,8 +138,8 @@ def find_onset(V, delta, edge, flow):
         solution counts if V (relative) and delta (absolute) are met to 1e-10.
     """
     v = flow.kappa * V
-    lowest = 2.0**flow.first
-    highest = 2.0 ** (flow.first + flow_layout.OCTAVES)
+    lowest = bits_to_float((flow.first + 1023) << 52)  # 2^first: 1023 is the exponent's bias
+    highest = lowest * 2.0**OCTAVES
     if not LOWEST <= v < min(highest, HIGHEST):
         return PLUS, v, 0.0, False
     _, slow = manifold_at_speed(v, flow.table)
@@ -165,10 +158,10 @@ def find_onset(V, delta, edge, flow):
     # the test of convergence follows the evaluation, so that ln_V and creep belong to the last v0
     # and u
     for _ in range(_MAX_ITERATIONS):
-        u = _clamp(u, LOWEST_U, _HIGHEST_U)
-        at, t, s = locate_in_layer(family, v0, u, flow)
-        ln_V, ln_t, ln_s = layer_value_and_slopes(flow.table, LAYER_LN_V, at, t, s)
-        creep, creep_t, creep_s = layer_value_and_slopes(flow.table, LAYER_CREEP, at, t, s)
+        u = min(max(LOWEST_U, u), _HIGHEST_U)  # LOWEST_U if it is NaN
+        place = locate_in_layer(family, v0, u, flow)
+        ln_V, ln_t, ln_s = layer_value_and_slopes(flow.table, LAYER_LN_V, place)
+        creep, creep_t, creep_s = layer_value_and_slopes(flow.table, LAYER_CREEP, place)
         if change < _CONVERGED:
             break
         # Distance from the manifold over that of the state, whose logarithm is to be 0.  Where the
@@ -178,6 +171,7 @@ def find_onset(V, delta, edge, flow):
             u = 0.5 * (u + LOWEST_U)  # ``change`` stays: the iteration has not converged
             continue
         # Slopes in ln v0 and u: s and t are 4 m - 3 with the mantissa m of v0 and of u.
+        _, t, s = place
         per_v = t + 3.0
         per_u = (s + 3.0) / u
         inverse_difference = 1.0 / (creep - slow)
@@ -194,7 +188,7 @@ def find_onset(V, delta, edge, flow):
         # among them
         shift = (first * d - b * second) / determinant
         step = (a * second - c * first) / determinant
-        v0 = _clamp(v * np.exp(ln_v0 - shift), lowest, 0.99 * highest)
+        v0 = min(max(lowest, v * np.exp(ln_v0 - shift)), 0.99 * highest)
         ln_v0 = ln_v0 - shift
         u = u - step
         # The errors that are left are about the squares of these: of delta gap second^2.
@@ -203,7 +197,7 @@ def find_onset(V, delta, edge, flow):
     # E of u: the inverse of flow_lookup.layer_coordinate
     E = (u - LOWEST_U) / (1.0 - LOWEST_U) * split if u < 1.0 else u - 1.0 + split
     found = abs(v0 * np.exp(ln_V) - v) <= _RESIDUAL * v and abs(creep - delta) <= _RESIDUAL
-    if found and E <= flow_layout.LAYER_END:
+    if found and E <= LAYER_END:
         return family, v0, E, True
     return PLUS, v, np.inf, abs(gap) < _INDISTINGUISHABLE
 
@@ -215,7 +209,6 @@ NOT_COVERED = -1
 #: largest ratio of initial speed to speed at onset: V at onset is a difference whose error is 2e-14
 #: of the initial one
 _MAX_SPEED_RATIO = 4096.0
-# Rows of the array of outputs.
 
 
 @inline_kernel
@@ -236,12 +229,13 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
     onset has none.
     """
     mu = flow.mu
-    (T, X) = start
+    T, X = start
     # V - j omega = w + 2 mu tau while sliding, and its integral is x - j angle = tau (w + mu tau).
     w = V - flow.j * omega
     V_on, T_on, X_on = read_onset(w - 2.0 * mu * T, level, flow)
     v = flow.kappa * abs(V_on)
-    covered = 2.0**flow.first <= v < 2.0 ** (flow.first + OCTAVES)
+    # V at onset is tabulated in the rows 1 to OCTAVES
+    covered = 0 < locate_octave(v, flow.first)[0] <= OCTAVES
     covered = covered and flow.kappa * max(abs(V), abs(omega)) <= _MAX_SPEED_RATIO * v
     # the map counts both from V = 0: differences; rounding may leave a start just after its onset
     tau = max(T_on - T, 0.0)
@@ -313,159 +307,78 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
 
 
 @inline_kernel
-def _write_full_slip(at, tau_out, until, slide, level, flow, out):
-    """Write the outputs before the onset of partial slip.
+def _full_slip_state(tau, slide, level, flow):
+    """Return the output before the onset of partial slip, in the frame of the caller.
 
-    at : int, first column to write.
-    tau_out : output times tau = gamma t, ascending, > 0 from column ``at`` on, (times,).
-    until : float, time tau of the onset; an output at that time is not written.
+    tau : float, time gamma t, > 0, before the onset.
     slide : :class:`FullSlipStart`: frame; w = V - j omega at the start, in the mirrored frame; T
         and X, time tau and gamma times the distance of sliding between rest and the V of the start.
-    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are written from PATH on, and 0
+    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are computed from PATH on, and are 0
         below it.
     flow : Flow, of the scene; ``table``, kappa, mu and j are read.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller;
-        delta is +inf where V = 0.  Columns with ``tau_out`` >= ``until`` stay.
-    Returns the index of the next column to write, int; it is the number of times where no output is
-    left.
+    Returns an :class:`Output` of floats; delta is +inf where V = 0.
     """
     mu = flow.mu
     per_j = 1.0 / flow.j
     frame, w, T0, X0 = slide
-    while at < tau_out.size and tau_out[at] < until:
-        tau = tau_out[at]
-        V = speed_at_slide_time(T0 + tau, flow)  # T counts from V = 0, and is T0 at the start
-        # From V - j omega = w + 2 mu tau and its integral over tau.
-        omega = (V - (w + 2.0 * mu * tau)) * per_j
-        x = angle = 0.0
-        if level >= PATH:
-            x = slide_distance((T0, X0), tau, flow)
-            angle = (x - tau * (w + mu * tau)) * per_j
-        delta = (omega - V) / V if V != 0.0 else np.inf
-        write_output(
-            out,
-            at,
-            Output(
-                V=frame * V,
-                omega=frame * omega,
-                x=frame * x,
-                angle=frame * angle,
-                delta=delta,
-                regime=float(FULL_SLIP),
-                loss=mu * (angle - x),
-            ),
-        )
-        at += 1
-    return at
+    V = speed_at_slide_time(T0 + tau, flow)  # T counts from V = 0, and is T0 at the start
+    # From V - j omega = w + 2 mu tau and its integral over tau.
+    omega = (V - (w + 2.0 * mu * tau)) * per_j
+    x = angle = 0.0
+    if level >= PATH:
+        x = slide_distance((T0, X0), tau, flow)
+        angle = (x - tau * (w + mu * tau)) * per_j
+    return Output(
+        V=frame * V,
+        omega=frame * omega,
+        x=frame * x,
+        angle=frame * angle,
+        delta=(omega - V) / V if V != 0.0 else np.inf,
+        regime=float(FULL_SLIP),
+        loss=mu * (angle - x),
+    )
 
 
 @inline_kernel
-def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
-    """Write the outputs in partial slip up to a time, in the boundary layer and then on the slow
-    manifold.
+def _partial_slip_state(tau, stick, asymptote, total_loss, level, flow):
+    """Return the output in partial slip, in the boundary layer or on the slow manifold, in the
+    frame of the caller.
 
-    at : int, first column to write.
-    tau_out : output times tau = gamma t, ascending, (times,).
-    until : float, last time tau; an output at that time is written.
+    tau : float, time gamma t, > 0, from the onset on.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`.records.Asymptote`: the motion on the slow manifold that it approaches.
+    total_loss : float, slip loss from the onset to rest; read at level LOSS.
     level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which
         have no meaning then.
     flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller:
-        of the times from column ``at`` to ``until``; the others stay.
-    Returns the index of the next column to write, int; it is the number of times where no output is
-    left.
+    Returns an :class:`Output` of floats.
     """
     frame = stick.frame
-    # slip loss from the onset to rest: that of the asymptote, and the excess over it; the loss so
-    # far is this less what remains
-    total_loss = (
-        remaining_slip_loss(asymptote.slow_log, flow.table) + asymptote.loss
-        if level >= LOSS
-        else 0.0
-    )
-    layer_end = stick.tau + LAYER_END / asymptote.rate
-    while at < tau_out.size and tau_out[at] <= until:
-        elapsed = tau_out[at] - stick.tau
-        x = angle = loss = 0.0
-        if tau_out[at] < layer_end:
-            V, delta, x, angle, loss = layer_state(
-                stick.family, stick.v, asymptote, elapsed, level, flow
-            )
-        else:
-            span = flow.slow_rate * elapsed
-            now = asymptote.slow_log - span
-            V, delta = manifold_speeds(now, flow.table)
-            if level >= PATH:
-                x, angle = manifold_path(asymptote.slow_log, span, flow.slow_rate, flow.table)
-                x = x + asymptote.x
-                angle = angle + asymptote.angle
-            if level >= LOSS:
-                loss = total_loss - remaining_slip_loss(now, flow.table)
-        write_output(
-            out,
-            at,
-            Output(
-                V=frame * V,
-                omega=frame * V * (1.0 + delta),
-                x=stick.x + frame * x,
-                angle=stick.angle + frame * angle,
-                delta=delta,
-                regime=float(PARTIAL_SLIP),
-                loss=stick.loss + loss,
-            ),
+    elapsed = tau - stick.tau
+    x = angle = loss = 0.0
+    if tau < stick.tau + LAYER_END / asymptote.rate:
+        V, delta, x, angle, loss = layer_state(
+            stick.family, stick.v, asymptote, elapsed, level, flow
         )
-        at += 1
-    return at
-
-
-@inline_kernel
-def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
-    """Write all outputs from the onset of partial slip to the last output time, those after coming
-    to rest included.
-
-    at : int, first column to write; nothing is written if it is the number of columns.
-    tau_out : output times tau = gamma t, ascending, (times,), at least one.
-    stick : :class:`StickOnset`: frame, speed, time and path at the onset.
-    asymptote : :class:`.records.Asymptote`: the motion on the slow manifold that it approaches.
-    request : :class:`.records.Request`: level; rest, the value of max(|V|, |omega|) below which a
-        motion is at rest, 0 for none; rest_slow_log, the slow logarithm at that value.
-    flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller;
-        rows beyond the level have no meaning.
-
-    Returns (status, time tau at which the motion comes to rest).  The status is COMPLETED (0), with
-    the time NaN, where the motion does not come to rest before the last output time; CAME_TO_REST
-    (1) where it does; NOT_COVERED (-1), with the time NaN and nothing written, where it would come
-    to rest within the boundary layer or before the start.
-    """
-    layer_end = stick.tau + LAYER_END / asymptote.rate
-    rest_time = np.inf
-    end = tau_out[tau_out.size - 1]
-    if request.rest > 0.0:
-        # the slow logarithm falls linearly from that of the asymptote at the onset; the formula
-        # holds on the slow manifold alone, after the layer
-        rest_time = stick.tau + (asymptote.slow_log - request.rest_slow_log) / flow.slow_rate
-        if rest_time < max(layer_end, 0.0):
-            return NOT_COVERED, np.nan
-    at = _write_partial_slip(
-        at, tau_out, min(rest_time, end), stick, asymptote, request.level, flow, out
+    else:
+        span = flow.slow_rate * elapsed
+        now = asymptote.slow_log - span
+        V, delta = manifold_pair(now, 0, flow.table)
+        if level >= PATH:
+            x, angle = manifold_path(asymptote.slow_log, span, flow.slow_rate, flow.table)
+            x += asymptote.x
+            angle += asymptote.angle
+        if level >= LOSS:
+            loss = total_loss - remaining_slip_loss(now, flow.table)
+    return Output(
+        V=frame * V,
+        omega=frame * V * (1.0 + delta),
+        x=stick.x + frame * x,
+        angle=stick.angle + frame * angle,
+        delta=delta,
+        regime=float(PARTIAL_SLIP),
+        loss=stick.loss + loss,
     )
-    if end <= rest_time:
-        return COMPLETED, np.nan
-    x, angle = manifold_path(
-        asymptote.slow_log, asymptote.slow_log - request.rest_slow_log, flow.slow_rate, flow.table
-    )
-    loss = (
-        asymptote.loss
-        + remaining_slip_loss(asymptote.slow_log, flow.table)
-        - remaining_slip_loss(request.rest_slow_log, flow.table)
-    )
-    x = stick.x + stick.frame * (x + asymptote.x)
-    angle = stick.angle + stick.frame * (angle + asymptote.angle)
-    write_rest(at, x, angle, stick.loss + loss, out)
-    return CAME_TO_REST, rest_time
 
 
 @inline_kernel
@@ -505,41 +418,62 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     frame = 1.0 if omega0 >= V0 else -1.0
     V = frame * V0
     omega = frame * omega0
-    at = 0
-    first = FULL_SLIP
     T, X, limit = full_slip_integrals(V, level, flow)
     starts_in_full_slip = omega - V >= limit  # limit: delta_star |V|
     if starts_in_full_slip:
         slide, stick, covered = _start_in_full_slip(frame, V, omega, (T, X), level, flow)
     else:
         stick, asymptote, covered = _start_in_partial_slip(V0, omega0, limit / abs(V), level, flow)
-        first = PARTIAL_SLIP
     if not covered or stick.v < 2.0 * kappa * request.rest:
         return NOT_COVERED, np.nan, np.nan
-    while at < tau_out.size and tau_out[at] == 0.0:
-        write_output(
-            out,
-            at,
-            Output(
+    end = tau_out[-1]
+    onset = np.nan
+    rest_time = np.inf
+    total_loss = 0.0
+    if stick.tau <= end:
+        if starts_in_full_slip:
+            onset = stick.tau
+            asymptote = read_asymptote(stick.family, stick.v, level, flow)
+        if request.rest > 0.0:
+            # the slow logarithm falls linearly from that of the asymptote at the onset; the formula
+            # holds on the slow manifold alone, after the layer
+            rest_time = stick.tau + (asymptote.slow_log - request.rest_slow_log) / flow.slow_rate
+            if rest_time < max(stick.tau + LAYER_END / asymptote.rate, 0.0):
+                return NOT_COVERED, np.nan, np.nan
+        # slip loss from the onset to rest: that of the asymptote, and the excess over it; the loss
+        # so far is this less what remains
+        if level >= LOSS:
+            total_loss = remaining_slip_loss(asymptote.slow_log, flow.table) + asymptote.loss
+    at = 0
+    while at < tau_out.size and tau_out[at] <= rest_time:
+        tau = tau_out[at]
+        if tau == 0.0:
+            state = Output(
                 V=V0,
                 omega=omega0,
                 x=0.0,
                 angle=0.0,
                 delta=(omega0 - V0) / V0 if V0 != 0.0 else np.inf,
-                regime=float(first),
+                regime=float(FULL_SLIP if starts_in_full_slip else PARTIAL_SLIP),
                 loss=0.0,
-            ),
-        )
+            )
+        elif tau < stick.tau:
+            state = _full_slip_state(tau, slide, level, flow)
+        else:
+            state = _partial_slip_state(tau, stick, asymptote, total_loss, level, flow)
+        for row in range(len(state)):
+            out[row, at] = state[row]
         at += 1
-    onset = np.nan
-    if starts_in_full_slip:
-        at = _write_full_slip(at, tau_out, stick.tau, slide, level, flow, out)
-        if tau_out[tau_out.size - 1] < stick.tau:
-            return COMPLETED, np.nan, np.nan
-        onset = stick.tau
-        asymptote = read_asymptote(stick.family, stick.v, level, flow)
-    status, rest_time = _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out)
-    return status, onset, rest_time
+    if end <= rest_time:
+        return COMPLETED, onset, np.nan
+    x, angle = manifold_path(
+        asymptote.slow_log, asymptote.slow_log - request.rest_slow_log, flow.slow_rate, flow.table
+    )
+    x = stick.x + stick.frame * (x + asymptote.x)
+    angle = stick.angle + stick.frame * (angle + asymptote.angle)
+    loss = total_loss - remaining_slip_loss(request.rest_slow_log, flow.table)
+    write_rest(at, x, angle, stick.loss + loss, out)
+    return CAME_TO_REST, onset, rest_time
 
 
 @kernel(allocates=True)
@@ -566,15 +500,28 @@ def look_up_motions(flow, motions, result, start, stop):
     gamma, rest, V0, omega0, t, rows = motions
     one = np.empty((ROWS, t.size))  # outputs of one motion, of which the requested rows are copied
     tau = t * gamma
-    j = flow.j
     level = SPEEDS
     # the highest level that a requested row needs; the rolling loss needs the slip loss
     for row in rows:
-        if row == OUT_X or row == OUT_ANGLE:
-            level = max(level, PATH)
         if row >= SLIP_LOSS:
             level = LOSS
-    request = Request(level, rest, slow_log_at_rest(rest, flow) if rest > 0.0 else 0.0)
+        elif level == SPEEDS and (row == OUT_X or row == OUT_ANGLE):
+            level = PATH
+    # The slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold;
+    # of one above half the highest V of a start, that half.
+    rest_slow_log = 0.0
+    if rest > 0.0:
+        highest = min(rest, 0.5 * HIGHEST / flow.kappa)
+        v = flow.kappa * highest
+        # the fixed point of V = rest/(1 + max(delta(V), 0)): a negative delta counts as 0, as |V|
+        # then is the larger speed, and below the tables delta counts as 0
+        for _ in range(4):
+            delta = manifold_at_speed(v, flow.table)[1] if v >= LOWEST else 0.0
+            v = flow.kappa * (highest / (1.0 + max(delta, 0.0)))
+        # below the tables that of their lowest V plus the logarithm of the ratio of the speeds
+        rest_slow_log = manifold_at_speed(max(v, LOWEST), flow.table)[0]
+        rest_slow_log += np.log(min(v, LOWEST) / LOWEST)
+    request = Request(level, rest, rest_slow_log)
     for i in range(start, stop):
         V = element(V0, i)
         omega = element(omega0, i)
@@ -585,7 +532,7 @@ def look_up_motions(flow, motions, result, start, stop):
                 V_now = one[OUT_V, m]
                 omega_now = one[OUT_OMEGA, m]
                 lost = 0.5 * (
-                    (V - V_now) * (V + V_now) + j * (omega - omega_now) * (omega + omega_now)
+                    (V - V_now) * (V + V_now) + flow.j * (omega - omega_now) * (omega + omega_now)
                 )
                 one[ROLLING_LOSS, m] = lost - one[SLIP_LOSS, m]
         result.onset[i] = onset / gamma

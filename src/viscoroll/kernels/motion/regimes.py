@@ -24,7 +24,7 @@ import numpy as np
 
 from ..law.cover_law import creep_of, reduced_creep
 from ..numerics.intrinsics import by_value
-from ..numerics.jit import inline_kernel, kernel
+from ..numerics.jit import kernel
 from ..records import (
     AT_REST,
     FULL_SLIP,
@@ -119,40 +119,6 @@ def brake_at_zero_omega(may_hold, state, regime, step_state, work):
 
 
 @kernel
-def comes_to_rest(state, regime, step_state, work):
-    """Return whether full slip ends at rest: V is 0 where the stick zone would form, so that omega
-    is 0 too.
-
-    V counts as 0 by one of two thresholds:
-
-    - omega is 0, as the brake holds it or it is prescribed to be 0 at this time: V is at most
-      max(1e-14, 10 rtol) times the largest V at the nodes of the step, as the event is located with
-      the error of the step.
-    - in all other cases: V is at most 1e-14 times V at the left end of the step, as rounding leaves
-      it.
-
-    state: State, at the event.
-    regime: Regime, of full slip; ``locked`` is read.
-    step_state: StepState, at the event; tau and segment are read.
-    work: Workspace, with V at the nodes of the step that ends there, the Drive and rtol.
-    Returns a bool; True at equality with a threshold, and so where V is exactly 0.
-    """
-    prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
-    # An omega prescribed to be 0 at this time acts like a brake that holds it.
-    omega_zero = (
-        prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
-    )
-    if not (regime.locked or omega_zero):
-        return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
-    # With omega = 0 slip ends at V = 0, to the tolerance of the step.
-    return (
-        state.V
-        <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol)
-        * row_range(ROW_V, work.nodes)[1]
-    )
-
-
-@kernel
 def reverse_direction(regime):
     """Return the Regime with the opposite direction, in which the signs of slip and omega are
     opposite too.
@@ -217,9 +183,13 @@ def impose_prescribed_speed(state, regime, step_state, work):
 def apply_event(event, state, regime, step_state, work):
     """Return state and regime after an event, in the unknowns of the new regime.
 
-    - STICK_EDGE in full slip: the cylinder comes to rest (:func:`comes_to_rest`), or partial slip
-      begins with d = sigma; a prescribed omega is then imposed (:func:`impose_prescribed_speed`)
-      where V changes at least as fast as omega.
+    - STICK_EDGE in full slip: the cylinder comes to rest if V is 0, so that omega is 0 too, or
+      partial slip begins with d = sigma; a prescribed omega is then imposed
+      (:func:`impose_prescribed_speed`) where V changes at least as fast as omega.  V counts as 0 up
+      to 1e-14 times V at the left end of the step, as rounding leaves it.  Where omega is 0, as the
+      brake holds it or it is prescribed to be 0 at this time, V counts as 0 up to max(1e-14, 10
+      rtol) times the largest V at the nodes of the step, as the event is located with the error of
+      the step.
     - STICK_EDGE in partial slip: full slip begins with the same sigma and with the omega of the
       state.
     - DELTA_ZERO: sigma changes its sign, d stays.
@@ -239,13 +209,22 @@ def apply_event(event, state, regime, step_state, work):
     work: Workspace, with V at the nodes of the step that ends there; Scene, Drive and rtol are read
     too.
     Returns (whether the cylinder moves, State, Regime): it does not move where it comes to rest, or
-    where V is 0 in the partial slip that begins; where it comes to rest by V_ZERO or by
-    :func:`comes_to_rest`, State and Regime are those that were passed.
+    where V is 0 in the partial slip that begins; where it comes to rest State and Regime are those
+    that were passed.
     """
     full_slip = regime.full_slip
     sigma = regime.sigma
     if event == STICK_EDGE and full_slip:
-        if comes_to_rest(state, regime, step_state, work):
+        least = _STICK_ZONE_CLOSED * work.nodes[ROW_V]
+        # An omega prescribed to be 0 at this time acts like a brake that holds it.
+        if regime.locked or (
+            work.drive.prescribed == PRESCRIBED_OMEGA
+            and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
+        ):
+            # With omega = 0 slip ends at V = 0, to the tolerance of the step.
+            least = max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol)
+            least *= row_range(ROW_V, work.nodes)[1]
+        if state.V <= least:
             return False, state, regime
         rates = current_rates(state, regime, step_state, work)
         state = State(state.V, sigma)
@@ -326,7 +305,7 @@ def speeds_after_sliding(V, omega, scene):
         :func:`.table_law.sticks_at_rest`.
     """
     law = by_value(scene.law)
-    free = 1.0 + rest_limits(scene)[1]  # omega/V of free rolling
+    free = 1.0 + rest_limits(scene, 1.0)[1]  # omega/V of free rolling
     j = scene.j
     if law.cover_rows is None and law.table is None:
         V = (V + j * omega) / (1.0 + j * free)
@@ -334,7 +313,8 @@ def speeds_after_sliding(V, omega, scene):
     c = asymmetry_at_speed(0.0, scene)
     # Sign of the creepage less delta_0; a product of the two least speeds would underflow to 0.
     side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0
-    limit = _limit_at_rest(side, scene)  # |delta - delta_0| at d = side without c d^2
+    # |delta - delta_0| at d = side without c d^2
+    limit = 0.5 * rest_limits(scene, side)[0] * scene.mu / scene.kappa
     left = np.inf  # |d| at which the integral over d begins; above 1 in full slip
     if V != 0.0:
         left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
@@ -355,7 +335,7 @@ def speeds_after_sliding(V, omega, scene):
             on_axis, on_spin, _, _ = pull_at_rest(turned, scene)
             kept *= abs(on_axis)
             side = turned
-            limit = _limit_at_rest(side, scene)
+            limit = 0.5 * rest_limits(scene, side)[0] * scene.mu / scene.kappa
         # V b + j omega a with omega/V at |d| = 1, where d + c d^2 = side + c
         V = kept / (abs(on_spin) + j * abs(on_axis) * (free + limit * (side + c)))
     for place, weight in _GAUSS:
@@ -367,14 +347,6 @@ def speeds_after_sliding(V, omega, scene):
         # |d| falls from ``left`` to 0, which turns the sign of -a/(b/j + a y).
         V *= np.exp(left * weight * dy * on_axis / (on_spin / j + on_axis * y))
     return V, V * free
-
-
-@inline_kernel
-def _limit_at_rest(side, scene):
-    """Return |delta - delta_0| at the onset of full slip in the limit V -> 0, a float > 0; of a
-    table that of one side, 1.0 or -1.0.
-    """
-    return 0.5 * rest_limits(scene, side)[0] * scene.mu / scene.kappa
 
 
 @kernel
@@ -412,9 +384,7 @@ def initial_regime(V, omega, step_state, work):
         return state, regime, False
     on_edge = abs(abs(slip) - limit) <= _START_ON_EDGE * max(V, abs(omega))
     stick_state = State(V, sigma if on_edge else reduced_slip(slip, limit, V, sigma, work.scene))
-    stick_regime = Regime(
-        full_slip=False, direction=direction, sigma=sigma, spin_sign=0.0, locked=False
-    )
+    stick_regime = change_slip(regime, False, sigma)
     if on_edge:  # The stick zone grows if |d| falls: the sign of V d' decides.
         on_edge = (
             sigma * current_rates(stick_state, stick_regime, step_state, work).weighted_rate < 0.0

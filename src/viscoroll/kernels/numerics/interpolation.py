@@ -59,19 +59,19 @@ class Interpolation:
 
     Parameters
     ----------
-    nodes : n distinct numbers, Decimals.
+    nodes : n distinct numbers, Decimals or integers.
 
     Attributes
     ----------
-    exact : the nodes as Decimals, a tuple of n.
+    exact : the nodes as they were given, a tuple of n.
     nodes : the nodes as doubles, (n,).
     """
 
     @in_40_digits
-    def __init__(self, nodes: Sequence[Decimal]) -> None:
+    def __init__(self, nodes: Sequence[Decimal | int]) -> None:
         """Compute the coefficients of Lagrange's polynomials of the nodes, with 40 digits.
 
-        nodes : list of at least two distinct numbers, Decimals; kept as ``exact`` and, rounded, as
+        nodes : at least two distinct Decimals or integers; kept as ``exact`` and, rounded, as
         ``nodes``.
         Raises decimal.DivisionByZero where two nodes are equal, or decimal.InvalidOperation if 0 is
         a node besides.
@@ -131,17 +131,16 @@ class Interpolation:
 
 
 @in_40_digits
-def radau(n: int, side: int) -> list[Decimal]:
-    """Return the nodes of Radau's rule on [-1, 1]: one end, and n - 1 nodes inside.
+def radau(n: int) -> list[Decimal]:
+    """Return the nodes of Radau's rule on [-1, 1] with the end 1: n - 1 nodes inside, and 1.
 
-    n : number of nodes, the end included, an int > 1; both arguments by position only.
-    side : the end that is a node, int, -1 or 1.
+    n : number of nodes, the end included, an int > 1, by position only.
     Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
     # P_(n-1) + P_n of Legendre vanishes at -1 and at the other nodes of the rule with that end; no
     # start is near -1 itself.  The nodes of the rule with the end 1 are those of the mirror image.
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
-    return sorted([Decimal(side), *(-side * x for x in inner)])
+    return sorted([Decimal(1), *(-x for x in inner)])
 
 
 @in_40_digits

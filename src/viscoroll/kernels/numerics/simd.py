@@ -1,10 +1,10 @@
 """Vectors of four doubles, and polynomials that they evaluate.
 
 **Vectors.**  One instruction of the processor adds, multiplies or divides all four numbers of a
-vector.  ``+ - * /`` work on two vectors, and on a vector and a number.  Each of the four results is
-rounded as it would be alone; :func:`fma4` rounds product and sum together.  A function that takes a
-``builder``, of LLVM, runs while numba compiles a kernel: it emits its instructions at the position
-of the builder and returns values of LLVM.
+vector.  ``+ - * / +=`` work on two vectors, and on a vector and a number.  Each of the four results
+is rounded as it would be alone; :func:`fma4` rounds product and sum together.  A function that
+takes a ``builder``, of LLVM, runs while numba compiles a kernel: it emits its instructions at the
+position of the builder and returns values of LLVM.
 
 **Polynomials of 24 coefficients.**  One function is stored as its coefficients in their order: six
 vectors, which are the coefficients of four polynomials in t^4, one in each lane: lane n has the
@@ -40,6 +40,9 @@ _INT = ir.IntType(32)
 
 class _FourType(types.Type):
     """numba's type of a vector."""
+
+    #: vectors of a value of this type, as numba's type of a tuple has it
+    count = 1
 
     def __init__(self):
         super().__init__("four numbers")
@@ -141,23 +144,25 @@ def _define_operator(function, name):
         lower_builtin(function, *kinds)(lower)
 
 
-for _name, _instruction in (("add", "fadd"), ("sub", "fsub"), ("mul", "fmul"), ("truediv", "fdiv")):
-    _define_operator(getattr(operator, _name), _instruction)
-    _define_operator(getattr(operator, f"i{_name}"), _instruction)
+_define_operator(operator.add, "fadd")
+_define_operator(operator.iadd, "fadd")
+_define_operator(operator.sub, "fsub")
+_define_operator(operator.mul, "fmul")
+_define_operator(operator.truediv, "fdiv")
 
 
 def _vectors_of(builder, kind, x, count):
     """Return the vectors of a tuple ``x``, or ``count`` times the vector ``x``; ``kind`` is its
     type.
     """
-    return cgutils.unpack_tuple(builder, x) if isinstance(kind, types.UniTuple) else [x] * count
+    return [x] * count if kind is FOUR else cgutils.unpack_tuple(builder, x)
 
 
 def _widest(*kinds):
     """Return numba's signature of :func:`fma4`: a tuple, if one of the arguments is a tuple, else a
     vector.
     """
-    return next((kind for kind in kinds if isinstance(kind, types.UniTuple)), FOUR)(*kinds)
+    return max(kinds, key=operator.attrgetter("count"))(*kinds)
 
 
 def _return_vectors(context, builder, kind, vectors):
@@ -175,8 +180,7 @@ def _fma4(context, builder, signature, arguments):
     # three columns of as many vectors as the result has
     kind = signature.return_type
     columns = (
-        _vectors_of(builder, own, x, getattr(kind, "count", 1))
-        for own, x in zip(signature.args, arguments)
+        _vectors_of(builder, own, x, kind.count) for own, x in zip(signature.args, arguments)
     )
     return _return_vectors(
         context, builder, kind, [fma_vectors(builder, *abc) for abc in zip(*columns, strict=True)]
@@ -205,7 +209,7 @@ def _unpack(context, builder, signature, arguments):
 
 def _load(context, builder, signature, arguments):
     kind = signature.return_type
-    vectors = load_vectors(context, builder, signature, arguments, getattr(kind, "count", 1))
+    vectors = load_vectors(context, builder, signature, arguments, kind.count)
     return _return_vectors(context, builder, kind, vectors)
 
 
@@ -406,7 +410,7 @@ def _join_pair(sums, t):
 
 
 @inline_kernel
-def _join(sums, t, square):
+def join_lanes(sums, t, square):
     """Return a + b t + c t^2 + d t^3, the last step of Estrin's scheme for a polynomial in t.
 
     a, b, c and d are polynomials in t^4: that of the coefficients 0, 4, 8 ..., that of 1, 5, 9 ...,
@@ -435,10 +439,9 @@ def evaluate_single(table, start, t):
     # are multiplied by 4 t^3.
     value, first_derivative = _one_sums(table, start, square * square)
     _, b, c, d = unpack(value)
-    slope = fma(
-        4.0 * t * square, _join(first_derivative, t, square), fma(t, fma(3.0 * t, d, 2.0 * c), b)
-    )
-    return _join(value, t, square), slope
+    slope = join_lanes(first_derivative, t, square)
+    slope = fma(4.0 * t * square, slope, fma(t, fma(3.0 * t, d, 2.0 * c), b))
+    return join_lanes(value, t, square), slope
 
 
 @inline_kernel
@@ -458,7 +461,7 @@ def _join_secant(sums, secants, t, s):
     # + t s + s^2.
     _, first, second, third = unpack(sums)
     first = fma(fma(t, s, square + s_square), third, fma(t + s, second, first))
-    return _join(sums, t, square), (t + s) * (square + s_square) * _join(
+    return join_lanes(sums, t, square), (t + s) * (square + s_square) * join_lanes(
         secants, s, s_square
     ) + first
 
