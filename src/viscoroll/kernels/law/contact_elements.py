@@ -274,18 +274,13 @@ def assemble(kernels, contact):
             third[j] = a2
         # The traction of inner node n is 1 at node n + 1 and falls linearly to 0 at its neighbours:
         # its second derivative is three impulses, with which the antiderivative is multiplied.
-        for n in range(N - 1):
-            behind = 1.0 / (nodes[n + 1] - nodes[n])
-            ahead = 1.0 / (nodes[n + 2] - nodes[n + 1])
-            contact.H[i, n] = behind * (first[n] - first[n + 1]) + ahead * (
-                first[n + 2] - first[n + 1]
-            )
-            contact.T[i, n] = behind * (second[n] - second[n + 1]) + ahead * (
-                second[n + 2] - second[n + 1]
-            )
-            contact.C[i, n] = behind * (third[n] - third[n + 1]) + ahead * (
-                third[n + 2] - third[n + 1]
-            )
+        for matrix, values in ((contact.H, first), (contact.T, second), (contact.C, third)):
+            for n in range(N - 1):
+                behind = 1.0 / (nodes[n + 1] - nodes[n])
+                ahead = 1.0 / (nodes[n + 2] - nodes[n + 1])
+                matrix[i, n] = behind * (values[n] - values[n + 1]) + ahead * (
+                    values[n + 2] - values[n + 1]
+                )
     _add_local(kernels.local, contact)
 
 

@@ -207,7 +207,8 @@ def _write_other_fields(n, c, law, scratch, request):
     transit time divided by T_ref), epsilon (shift of the contact ahead of the axis, in half contact
     lengths), beta (stick zone divided by the contact length), dQ_dV, dQ_ddelta, dQ_domega, dM_dV,
     dM_ddelta and dM_domega, M of half-space and cylinder with their slopes in V and omega, and
-    factors and excesses by which shear acts back on both (:func:`_write_reaction`).
+    factors of Q (``reaction_half_space``, ``reaction_cylinder``) and of Q |Q|/mu (``excess_...``)
+    that are subtracted from M of a body on a cover, of either sign.
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta
     and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded
@@ -221,20 +222,20 @@ def _write_other_fields(n, c, law, scratch, request):
     v = scratch[_STICK + c]
     position = _position(_POSITION, c, scratch)
     stick_position = _position(_STICK_POSITION, c, scratch)
-    write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, request)
+    delta_star = 0.5 * state.mu / state.kappa * L
+    delta_0 = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
+    # The onsets are delta_0 + delta_star (c -+ 1): d = -1 and 1 in d + c d^2 of cover_law.
+    shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
+    write_field(to.delta_star, delta_star, n, request)
     write_field(to.delta, slip_and_creepage(state)[1], n, request)
-    write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
-    if max(to.delta_minus, to.delta_plus) >= 0:
-        # The onsets are delta_0 + delta_star (c -+ 1): d = -1 and 1 in d + c d^2 of cover_law.
-        middle = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
-        star = 0.5 * state.mu / state.kappa * L
-        shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
-        write_field(to.delta_minus, middle + star * (shift - 1.0), n, request)
-        write_field(to.delta_plus, middle + star * (shift + 1.0), n, request)
+    write_field(to.delta_0, delta_0, n, request)
+    write_field(to.delta_minus, delta_0 + delta_star * (shift - 1.0), n, request)
+    write_field(to.delta_plus, delta_0 + delta_star * (shift + 1.0), n, request)
     write_field(to.full_slip, 1.0 if abs(D) == np.inf else 0.0, n, request)
     if to.grip >= 0:
         write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
-    if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
+    # ``&`` of rows, here and below, as in law_record.asks_for_moments
+    if (to.lam & to.zeta & to.epsilon & to.beta) >= 0:
         lam, epsilon = lam_and_epsilon(position, u, law)
         # beta is formed with lam of the contact without traction; lam itself is corrected below
         write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
@@ -246,54 +247,18 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon + epsilon_change, n, request)
-    _write_reaction(n, position, u, state, law, law.cover_rows, request)
-    if max(to.M_half_space, to.M_cylinder) >= 0:
+    if _is_cover(law.cover_rows):  # of half-spaces nobody asks for these fields
+        write_field(to.reaction_half_space, scratch[_FACTOR + c], n, request)
+        write_field(to.reaction_cylinder, scratch[_CYLINDER_FACTOR + c], n, request)
+        write_field(to.excess_half_space, scratch[_FACTOR_EXCESS + c], n, request)
+        write_field(to.excess_cylinder, scratch[_CYLINDER_FACTOR_EXCESS + c], n, request)
+    if (to.M_half_space & to.M_cylinder) >= 0:
         _write_body_moments(n, c, law, law.cover_rows, scratch, request)
     of_Q, of_M, of_bodies = asks_for_slopes(to)
     if of_Q or of_M or of_bodies:
         # M of a cover depends on Q, so that its slopes need those of Q.
         slopes_of_Q = of_Q or _is_cover(law.cover_rows)
         _write_slopes(n, c, of_bodies, slopes_of_Q, law, scratch, request)
-
-
-@inline_kernel
-def _write_reaction(n, position, u, state, law, cover_rows, request):
-    """Write how shear acts back on the moments of a state on a cover
-    (:class:`.cover_law.Reaction`), if it is requested.
-
-    n : int, index of the state.
-    position : :class:`.law_functions.RowPosition` of u.
-    u : float, kappa |V|, dimensionless, >= 0.
-    state : :class:`.law_record.State` of numbers, of which kappa and mu are read.
-    law : :class:`.law_record.Law` of the material, of which L is read.
-    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written: nobody asks
-    for it.
-    request : :class:`.law_record.Request` of states and quantities; ``out`` gets the factors of Q
-        (``reaction_half_space``, ``reaction_cylinder``) and of Q |Q|/mu (``excess_...``) that are
-        subtracted from M of a body, dimensionless, of either sign.
-    Returns nothing.
-    """
-    if cover_rows is not None:
-        to = request.to
-        # a row above -1 among the four: one is requested
-        if (
-            max(
-                to.reaction_half_space,
-                to.reaction_cylinder,
-                to.excess_half_space,
-                to.excess_cylinder,
-            )
-            >= 0
-        ):
-            functions = length_and_moment(position, u, law)
-            pairs = pairs_at(position, u, cover_rows)
-            shear = shear_reaction(
-                pairs, state.kappa, state.mu, functions.L, functions.dL, cover_rows
-            )
-            write_field(to.reaction_half_space, shear.half_space, n, request)
-            write_field(to.reaction_cylinder, shear.cylinder, n, request)
-            write_field(to.excess_half_space, shear.half_space_excess, n, request)
-            write_field(to.excess_cylinder, shear.cylinder_excess, n, request)
 
 
 @inline_kernel
@@ -529,7 +494,7 @@ def contact_loop(laws, request, scratch, count):
     to = request.to
     others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)  # whether more than Q and M is asked
     for first in range(0, count, TOGETHER):
-        size = min(TOGETHER, count - first)
+        size = count - first if count - first < TOGETHER else TOGETHER
         for k in range(size):
             c = np.uint64(k)
             state = read_state(request.states, _index(first + k, request))
@@ -542,7 +507,7 @@ def contact_loop(laws, request, scratch, count):
         # are evaluated together.
         together = size if laws[0].selector == 0 else len(laws)
         for begin in range(0, size, together):
-            end = min(begin + together, size)
+            end = begin + together if begin + together < size else size
             for k in range(begin, end):
                 select_material(laws[k % len(laws)], _index(first + k, request))
             _write_positions(_U, _POSITION, begin, end, laws, scratch)

@@ -104,7 +104,8 @@ def eliminate(contact, coupled):
         read.
     coupled : bool, whether C is not 0; else it is not read.
     Returns (whether the matrix has an inverse, a bool; (N, N): B in its first N - 1 columns, a in
-    the last; the last row belongs to g; zeros without an inverse).  Without ``coupled`` B is 0.
+    the last; the last row belongs to g; numbers without meaning if there is no inverse).  Without
+    ``coupled`` B is 0.
     """
     at = contact.at
     N = at.size
@@ -116,8 +117,6 @@ def eliminate(contact, coupled):
     order = np.empty(N, np.int64)
     good = factor(matrix, order)
     found = np.zeros((N, N))
-    if not good:
-        return good, found
     if coupled:
         found[:, : N - 1] = contact.C
         found[:, N - 1] = at
@@ -211,7 +210,6 @@ def pressure_and_strain(S, B, contact):
     """
     q = contact.q
     n = q.size
-    g = 0.0
     for i in range(n + 1):
         own = B[i]
         row = S[i]
@@ -224,9 +222,7 @@ def pressure_and_strain(S, B, contact):
         contact.strain[i] = slope
         if i < n:  # the last row is that of g
             contact.p[i] = value
-        else:
-            g = value
-    return g
+    return value
 
 
 @kernel(allocates=True)

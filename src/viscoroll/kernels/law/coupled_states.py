@@ -221,39 +221,29 @@ def solve_contact(row, contact, c, mu, d, spots, again):
 
 
 @kernel
-def slip_work(contact, d):
-    """Return the slip loss divided by V: the integral of q (d - u') over the elements that slip.
+def slip_and_stick(contact, d):
+    """Return the slip loss divided by V, and the part of the contact that sticks.
 
     contact : solved :class:`Contact`.
-    d : float, kappa times the creepage delta.
-    Returns a float, in the units of the module.
+    d : float, kappa times the creepage delta; infinite in full slip, where the slip loss has no
+        meaning.
+    Returns the integral of q (d - u') over the elements that slip, in the units of the module, and
+    the length of the others divided by that of the contact, in [0, 1]; floats.
     """
-    found = 0.0
+    nodes = contact.nodes
+    work = 0.0
+    stick = 0.0
     # Element e, ahead of inner node e - 1, has the zone of that node; the rearmost element that of
     # inner node 0.
     for e in range(contact.at.size):
-        if contact.zone[max(e - 1, 0)] != 0.0:
+        length = nodes[e + 1] - nodes[e]
+        if contact.zone[e - 1 if e > 0 else 0] == 0.0:
+            stick += length
+        else:
             a = node_value(contact.q, e)
             b = node_value(contact.q, e + 1)
-            found += (
-                0.5 * (contact.nodes[e + 1] - contact.nodes[e]) * (a + b) * (d - contact.strain[e])
-            )
-    return found
-
-
-@kernel
-def stick_length(contact):
-    """Return the length of the elements that stick, divided by the length of the contact.
-
-    contact : solved :class:`Contact`.
-    Returns a float in [0, 1].
-    """
-    # an element has the zone of the inner node behind it, as in slip_work
-    found = 0.0
-    for e in range(contact.at.size):
-        if contact.zone[max(e - 1, 0)] == 0.0:
-            found += contact.nodes[e + 1] - contact.nodes[e]
-    return found / (contact.nodes[contact.at.size] - contact.nodes[0])
+            work += 0.5 * length * (a + b) * (d - contact.strain[e])
+    return work, stick / (nodes[contact.at.size] - nodes[0])
 
 
 @inline_kernel
@@ -263,28 +253,6 @@ def _of_matrix(matrix, e, values):
     for j in range(values.size):
         found += matrix[e, j] * values[j]
     return found
-
-
-@kernel(allocates=True)
-def split_powers(row, contact):
-    """Return (integral of p times the slope of the cylinder, integral of q times its strain).
-
-    They are its moment and the work of its strain, over V (docs/theory_covers.md, Powers).
-
-    row : :class:`Row`, of which the kernels of the cylinder alone are read.
-    contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder: they
-        do not belong to its tractions any more.
-    Both are floats, in the units of the module.
-    """
-    assemble(row.own, contact)
-    N = contact.at.size
-    slope = np.empty(N)
-    strain = np.empty(N)
-    # H p + C q and T q - C p, as in contact_elements, of the part that the cylinder has in both
-    for e in range(N):
-        slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
-        strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
-    return product(contact, contact.p, slope), product(contact, contact.q, strain)
 
 
 @kernel(allocates=True)
@@ -306,13 +274,13 @@ def write_state(contact, c, g, mu, d, status, out):
     out[1] = g / c
     out[2] = traction / (mu * total)
     out[3] = g + moment / total
+    work, out[7] = slip_and_stick(contact, d)
     # In full slip d is not known here: q u' is integrated as it is, by the linear strain.
     if math.isinf(d):
         out[4] = 2.0 * product(contact, contact.q, contact.strain) / total
     else:
         # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
-        out[4] = 2.0 * (d * traction - slip_work(contact, d)) / total
-    out[7] = stick_length(contact)
+        out[4] = 2.0 * (d * traction - work) / total
     # The integral of negative pressure: that of inner node i counts for half of the two elements
     # beside it, which lie between the nodes i and i + 2 of the mesh.
     if status == SOLVED:
@@ -381,21 +349,28 @@ def finish_state(row, contact, out):
     row : :class:`Row`, of which ``split`` and ``cylinder`` are read, and where both bodies deform
         the kernels of the cylinder.
     contact : the solved :class:`Contact` of the state; where both bodies deform its matrices are
-        overwritten by those of the cylinder.
+        overwritten by those of the cylinder, which do not belong to its tractions.
     out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written: kappa
         M and 2 kappa times the work of the strain, of the cylinder.
     Returns nothing.
     """
     # kappa M of the cylinder alone, and 2 kappa times the work of its strain, per load; where one
     # body alone deforms they are all of columns 3 and 4, or nothing
-    if row.split:
-        total, _ = moments(contact.nodes, contact.p)
-        moment, work = split_powers(row, contact)
-        out[5] = moment / total
-        out[6] = 2.0 * work / total
-    else:
+    if not row.split:
         out[5] = out[3] if row.cylinder else 0.0
         out[6] = out[4] if row.cylinder else 0.0
+        return
+    assemble(row.own, contact)
+    slope = np.empty(contact.at.size)
+    strain = np.empty(contact.at.size)
+    # H p + C q and T q - C p, as in contact_elements, of the part that the cylinder has in both;
+    # with p and q they give its moment and the work of its strain (docs/theory_covers.md, Powers)
+    for e in range(contact.at.size):
+        slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
+        strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
+    total, _ = moments(contact.nodes, contact.p)
+    out[5] = product(contact, contact.p, slope) / total
+    out[6] = 2.0 * product(contact, contact.q, strain) / total
 
 
 @kernel(allocates=True)
@@ -546,29 +521,25 @@ def touch_creep(row, mu, low, high, count, c, slope):
     out = np.zeros(COLUMNS)
     a = low
     b = high
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (a + b)
-        plus, _, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
-        if plus:
-            b = middle
-        else:
-            a = middle
-    opened = 0.5 * (a + b)
-    # Above ``opened`` by a few times the error of the bisection: whether slip of sign - is left.
-    _, minus, edge, c = rear_slip(row, contact, c, slope, mu, b + 2e-3 * (high - low), out)
-    if not minus or edge < 0.0:
-        return opened
-    # Both signs exist, with + at the rear edge: the creepage at which - ends.
-    a = opened
-    b = high
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (a + b)
-        _, minus, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
-        if minus:
-            a = middle
-        else:
-            b = middle
-    return 0.5 * (a + b)
+    # first the creepage at which slip of sign + opens, then, if it is wanted, that at which - ends
+    for ends in range(2):
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (a + b)
+            plus, minus, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
+            above = plus if ends == 0 else not minus
+            if above:
+                b = middle
+            else:
+                a = middle
+        a = 0.5 * (a + b)
+        if ends == 0:
+            # Above by a few times the error of the bisection: whether slip of sign - is left.
+            beyond = b + 2e-3 * (high - low)
+            _, minus, edge, c = rear_slip(row, contact, c, slope, mu, beyond, out)
+            if not minus or edge < 0.0:
+                break
+            b = high  # Both signs exist, with + at the rear edge.
+    return a
 
 
 @kernel(allocates=True)

@@ -395,8 +395,8 @@ def H_over_F2(position, v, law):
 
 @inline_kernel
 def H_over_F2_secants(position, near, v, x, law):
-    """Return H/F^2 and its slope at v, and the mean slopes of both between v/(1 + x) and v, without
-    cancellation.
+    """Return H/F^2 at v, and the mean slopes of it and of its slope between v/(1 + x) and v,
+    without cancellation.
 
     position : :class:`RowPosition` of v.
     near : :class:`RowPosition` of v/(1 + x), in the same row or in the one before; not read where v
@@ -407,16 +407,16 @@ def H_over_F2_secants(position, near, v, x, law):
     law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 or, beyond the
     last row, the head are read.
 
-    Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v,
+    Returns (value, mean slope of the value, mean slope of the slope), floats, all over v,
     dimensionless.  At x = 0, where both ends are v, the mean slopes are the slope and the second
     derivative.  Where the ends are in two rows, a mean slope is the sum of those in either row,
     weighted by their shares of the interval.
     """
     if in_fast_limit(position):
-        return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
+        return H_over_F2(position, v, law)[0], *_fast_secants(v, x, law)
     dt = position.dt_dx
     end = near.t if near.row == position.row else -1.0  # -1: the begin of the row of v
-    value, secant, slope, slope_secant = evaluate_secants(
+    value, secant, _, slope_secant = evaluate_secants(
         law.rows, ensure_part(H_OVER_F2, position.row, law), position.t, end
     )
     # from t to v: a slope has the factor dt/dv, the secant of the slope has it twice
@@ -429,10 +429,11 @@ def H_over_F2_secants(position, near, v, x, law):
         _, near_secant, _, near_slope_secant = evaluate_secants(law.rows, start, 1.0, near.t)
         # Fraction of the interval, of length v x/(1 + x), that lies in the row of v, which begins
         # (t + 1)/dt before v; rounding may leave more than 1.
-        part = min((position.t + 1.0) * (1.0 + x) / (dt * v * x), 1.0)
+        part = (position.t + 1.0) * (1.0 + x) / (dt * v * x)
+        part = 1.0 if part > 1.0 else part
         secant = part * secant + (1.0 - part) * near_secant * near_dt
         slope_secant = part * slope_secant + (1.0 - part) * near_slope_secant * near_dt * near_dt
-    return value, slope * dt, secant, slope_secant
+    return value, secant, slope_secant
 
 
 @kernel

@@ -45,49 +45,44 @@ _LN2 = 0.69314718055994530942
 _HANKEL_FROM = 25.0
 
 
-def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
+def _hankel(order: int, sign: int) -> list[float]:
     """Return the coefficients of Hankel's expansion of a Bessel function in 1/x.
 
     order : int, 0 or 1, of the Bessel function.
     sign : int, -1 for sqrt(2 pi x) e^-x I(x), 1 for sqrt(2 x/pi) e^x K(x).
-    terms : int, highest power, >= 0.
-    Returns the ``terms`` + 1 coefficients of ascending powers of 1/x, the first 1, a list of
-    floats.
+    Returns the 21 coefficients of ascending powers of 1/x, the first 1, a list of floats.
     """
     a = [1.0]
-    for n in range(1, terms + 1):
+    for n in range(1, 21):
         a.append(sign * a[-1] * (4 * order**2 - (2 * n - 1) ** 2) / (8 * n))
     return a
 
 
-def _temme_k0(terms: int = 10) -> list[list[float]]:
+def _temme_k0() -> list[list[float]]:
     """Return the first coefficients of q^n, q = z^2/4, of the two series of which K0(z) consists.
 
-    terms : number of coefficients of each series.
-    Returns [coefficients of I0, coefficients of K0 + (ln(z/2) + gamma) I0], lists of ``terms``
-    floats, n = 0 first; gamma is Euler's constant.
+    Returns [coefficients of I0, coefficients of K0 + (ln(z/2) + gamma) I0], lists of ten floats, n
+    = 0 first; gamma is Euler's constant.
     """
-    harmonic = [sum(1 / i for i in range(1, n + 1)) for n in range(terms)]
-    plain = [1 / math.factorial(n) ** 2 for n in range(terms)]
-    return [plain, [h * p for h, p in zip(harmonic, plain)]]
+    plain = [1 / math.factorial(n) ** 2 for n in range(10)]
+    return [plain, [sum(1 / i for i in range(1, n + 1)) * p for n, p in enumerate(plain)]]
 
 
-def _temme_k1(terms: int = 10) -> list[list[float]]:
+def _temme_k1() -> list[list[float]]:
     """Return the first coefficients of q^n, q = z^2/4, of the two series of which z K1(z) consists.
 
     z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... +
     1/n.
 
-    terms : number of coefficients of each series.
-    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of
-    ``terms`` floats, n = 0 first; gamma is Euler's constant.
+    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of ten
+    floats, n = 0 first; gamma is Euler's constant.
     """
     # z I1 = sum 2 n q^n/n!^2, by which the logarithm of f_n is multiplied; the rest is 1/n!^2 less
     # 2 n/n!^2 times the harmonic sum, from n = 1 on
-    i0, k0 = _temme_k0(terms)
+    i0, k0 = _temme_k0()
     return [
-        [2 * n * i0[n] for n in range(terms)],
-        [0.0] + [i0[n] - 2 * n * k0[n] for n in range(1, terms)],
+        [2 * n * i0[n] for n in range(10)],
+        [0.0] + [i0[n] - 2 * n * k0[n] for n in range(1, 10)],
     ]
 
 
@@ -452,7 +447,7 @@ def direct_state(alpha, n, request):
     write_field(to.beta, beta, n, request)
     write_field(to.Q, np.sign(slip) * Q, n, request)
     write_field(to.M, M, n, request)
-    return max(status, stick_status)
+    return status | stick_status
 
 
 @kernel
@@ -470,5 +465,5 @@ def direct_loop(alpha, request, count):
     """
     worst = OK
     for n in range(count):
-        worst = max(worst, direct_state(element(alpha, n), n, request))
+        worst |= direct_state(element(alpha, n), n, request)
     return worst
