@@ -74,7 +74,7 @@ from .traction_functions import (
     _U,
     #: L = 2 kappa delta_star/mu.
     _L,
-    #: 2 kappa delta_0, from the creepage of free rolling.
+    #: f = 2 kappa delta_0, from the creepage of free rolling.
     _FREE_CREEP,
     #: D with a sign (:func:`signed_creep`).
     _D,
@@ -92,9 +92,7 @@ from .traction_functions import (
     _Q,
     #: The asymmetry c of a cover.
     _ASYMMETRY,
-    #: f of a cover (:mod:`.cover_law`).
-    _FREE,
-    #: g of it.
+    #: g of a cover (:mod:`.cover_law`).
     _EXCESS,
     #: f_c, the part of the cylinder.
     _FREE_CYLINDER,
@@ -389,7 +387,7 @@ def _write_pairs(c, position, cover_rows, scratch, request):
         u = scratch[_U + c]
         # values alone, without derivatives
         total = total_at(position, u, cover_rows)
-        scratch[_FREE + c] = total.first.value
+        scratch[_FREE_CREEP + c] = total.first.value
         scratch[_EXCESS + c] = total.second.value
         if asks_for_moments(request.to):
             cylinder = cylinder_at(total, position, u, cover_rows)
@@ -399,8 +397,7 @@ def _write_pairs(c, position, cover_rows, scratch, request):
 
 @inline_kernel
 def _write_cover(c, cover_rows, scratch, request):
-    """Store what the pairs of :func:`_write_pairs` mean: 2 kappa delta_0, the asymmetry, and the
-    factors of Q in M.
+    """Store what the pairs of :func:`_write_pairs` mean: the asymmetry, and the factors of Q in M.
 
     No polynomial is evaluated here, so that a loop over states becomes vector instructions.
 
@@ -408,19 +405,18 @@ def _write_cover(c, cover_rows, scratch, request):
     cover_rows : of any cover among those of the block: it is only asked whether it is None, of
         half-spaces, and then nothing is written; no number of it is read.
     scratch : (SCRATCH_SIZE,) doubles: kappa, mu, L, f and g of the state are read, and f_c and g_c
-        where a moment is requested.  2 kappa delta_0 and c are written, and where a moment is
-        requested the factors and excesses of :class:`.cover_law.Reaction` of both bodies.
+        where a moment is requested.  The asymmetry c is written, and where a moment is requested
+        the factors and excesses of :class:`.cover_law.Reaction` of both bodies.
     request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
     if cover_rows is not None:
-        total = _values(scratch[_FREE + c], scratch[_EXCESS + c])
+        total = _values(scratch[_FREE_CREEP + c], scratch[_EXCESS + c])
         # of an earlier state where no moment is requested: nothing below reads it then
         cylinder = _values(scratch[_FREE_CYLINDER + c], scratch[_EXCESS_CYLINDER + c])
         pairs = Pairs(total, cylinder)
         mu = scratch[_MU + c]
         L = scratch[_L + c]
-        scratch[_FREE_CREEP + c] = total.first.value
         # 0 for the derivatives of L, here and below: values alone are read, which do not need them
         scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
         if asks_for_moments(request.to):

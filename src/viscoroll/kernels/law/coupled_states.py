@@ -29,7 +29,6 @@ from .contact_elements import (
     moments,
     node_value,
     product,
-    scale_mesh,
 )
 from .contact_zones import (
     eliminate,
@@ -120,15 +119,17 @@ def new_contact(count):
 
 
 @kernel
-def find_spots(zone, place, spots):
+def find_spots(contact, spots):
     """Write the spots of a mesh, places at which it is refined, at the edges of the zones of a
     contact; return their number, an int.
 
-    zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
+    contact : :class:`Contact`, of which zones and parameters of nodes are read.
     spots : (MOST_SPOTS, 3), parameter, width and weight of each
         (:func:`.contact_elements.make_mesh`), written from the first row on, from the rear edge to
         the front edge; further edges than it has rows are left out.
     """
+    zone = contact.zone
+    place = contact.place
     used = 0
     # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
     for i in range(zone.size - 1):
@@ -156,7 +157,7 @@ def gather(row, contact, c, spots):
         element.
     """
     count = contact.at.size
-    edges = find_spots(contact.zone, contact.place, spots)
+    edges = find_spots(contact, spots)
     used = edges
     # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
     # c pi^2 (1 - t)^2/2 behind the front edge.
@@ -198,7 +199,12 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     count = contact.at.size
     edges = 0  # number of edges at which the mesh is refined; 0 where the mesh is kept
     if again:
-        scale_mesh(c, contact)
+        # to the half length c about the middle of the contact, x = 0; parameters of nodes stay
+        factor = 2.0 * c / (contact.nodes[count] - contact.nodes[0])
+        for n in range(count):
+            contact.nodes[n] *= factor
+            contact.at[n] *= factor
+        contact.nodes[count] *= factor
     else:
         edges = gather(row, contact, c, spots)
     assemble(row.both, contact)
@@ -214,36 +220,10 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     # Edges of the zones of the solution.  With a mesh that is
     # kept (edges = 0) the result is of no use, and find_length does not wait for it.
     found = np.empty((MOST_SPOTS, 3))
-    centred = find_spots(contact.zone, contact.place, found) == edges
+    centred = find_spots(contact, found) == edges
     for k in range(edges):
         centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
     return SOLVED if good else NO_ZONES, g, centred
-
-
-@kernel
-def slip_and_stick(contact, d):
-    """Return the slip loss divided by V, and the part of the contact that sticks.
-
-    contact : solved :class:`Contact`.
-    d : float, kappa times the creepage delta; infinite in full slip, where the slip loss has no
-        meaning.
-    Returns the integral of q (d - u') over the elements that slip, in the units of the module, and
-    the length of the others divided by that of the contact, in [0, 1]; floats.
-    """
-    nodes = contact.nodes
-    work = 0.0
-    stick = 0.0
-    # Element e, ahead of inner node e - 1, has the zone of that node; the rearmost element that of
-    # inner node 0.
-    for e in range(contact.at.size):
-        length = nodes[e + 1] - nodes[e]
-        if contact.zone[e - 1 if e > 0 else 0] == 0.0:
-            stick += length
-        else:
-            a = node_value(contact.q, e)
-            b = node_value(contact.q, e + 1)
-            work += 0.5 * length * (a + b) * (d - contact.strain[e])
-    return work, stick / (nodes[contact.at.size] - nodes[0])
 
 
 @inline_kernel
@@ -274,19 +254,32 @@ def write_state(contact, c, g, mu, d, status, out):
     out[1] = g / c
     out[2] = traction / (mu * total)
     out[3] = g + moment / total
-    work, out[7] = slip_and_stick(contact, d)
+    nodes = contact.nodes
+    work = 0.0  # int q (d - u') over the elements that slip, the slip loss divided by V
+    stick = 0.0  # length of the others
+    # Element e, ahead of inner node e - 1, has the zone of that node; the rearmost element that of
+    # inner node 0.
+    for e in range(contact.at.size):
+        length = nodes[e + 1] - nodes[e]
+        if contact.zone[e - 1 if e > 0 else 0] == 0.0:
+            stick += length
+        else:
+            a = node_value(contact.q, e)
+            b = node_value(contact.q, e + 1)
+            work += 0.5 * length * (a + b) * (d - contact.strain[e])
     # In full slip d is not known here: q u' is integrated as it is, by the linear strain.
     if math.isinf(d):
         out[4] = 2.0 * product(contact, contact.q, contact.strain) / total
     else:
         # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
         out[4] = 2.0 * (d * traction - work) / total
+    out[7] = stick / (nodes[contact.at.size] - nodes[0])
     # The integral of negative pressure: that of inner node i counts for half of the two elements
     # beside it, which lie between the nodes i and i + 2 of the mesh.
     if status == SOLVED:
         negative = 0.0
         for i in range(contact.p.size):
-            negative -= min(contact.p[i], 0.0) * 0.5 * (contact.nodes[i + 2] - contact.nodes[i])
+            negative -= min(contact.p[i], 0.0) * 0.5 * (nodes[i + 2] - nodes[i])
         if negative > _TENSION * total:
             status = TENSION
     out[8] = status
@@ -472,7 +465,7 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
         finish_state(row, contact, out[n])
         guess = length
         this = n % 2
-        found[this] = find_spots(contact.zone, contact.place, edges[this])
+        found[this] = find_spots(contact, edges[this])
         if 0 < n < creeps.size - 1:
             # linear in ``at``: ln of the half length (column 9), and the edges if as many as before
             ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)

@@ -140,7 +140,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     V = caller_V / scene.V
     omega = caller_omega / scene.omega
     u = scene.kappa * abs(V)
-    if not (u <= MAX_U and abs(V) < np.inf and abs(omega) < np.inf):  # False for NaN too
+    if not (u <= MAX_U and abs(omega) < np.inf):  # False for NaN too
         return refuse(out)
     state = State(kappa=scene.kappa, mu=scene.mu, V=V, creep=omega, creep_is_omega=True)
     position = locate_row(u, law)

@@ -205,26 +205,26 @@ def _residual(equation, x, data):
 
 
 @kernel
-def brent(equation, data, low, high, floor):
-    """Find the root x of _residual(equation, x, data) in [low, high] by the method of Brent and
+def brent(equation, data, low, floor):
+    """Find the root x of _residual(equation, x, data) in [low, 1] by the method of Brent and
     Dekker.
 
     equation, data : arguments of :func:`_residual`.
-    low, high : floats, ends of the bracket, low <= high (equal for alpha = 1).
+    low : float, begin of the bracket, at most its end 1 (equal for alpha = 1).
     floor : float, absolute tolerance, >= 0; the root is found to floor + 4e-16 |x|.
     Returns (root, status), a float and an int: OK (0); or NOT_CONVERGED (1), after 60 steps with
     the best value so far (NaN if the residual became NaN on the way), or with NaN for the root
     where the residual is NaN at an end.
 
     At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].  The residual falls
-    from >= 0 at low to <= 0 at high.  An end where it is 0, or where rounding spoils that sign, is
-    itself the root, to rounding: ``high`` with a residual >= 0, else ``low`` with one <= 0, is
+    from >= 0 at low to <= 0 at 1.  An end where it is 0, or where rounding spoils that sign, is
+    itself the root, to rounding: 1 with a residual >= 0, else ``low`` with one <= 0, is
     returned as OK without a step, whatever the other end has.
     """
     a = low
     fa = _residual(equation, low, data)
-    b = high
-    fb = _residual(equation, high, data)
+    b = 1.0
+    fb = _residual(equation, b, data)
     if fb >= 0.0:
         return b, OK
     if fa <= 0.0:
@@ -298,7 +298,7 @@ def direct_contact_length(kappa_V, alpha):
     epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V = 1e-8, alpha =
     11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
     """
-    lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 1.0, 0.0)
+    lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 0.0)
     zeta = lam / (2.0 * kappa_V)
     epsilon = 0.5 * (1.0 / (lam * lam) - 1.0) * ratio_k0k1(zeta)
     return lam, zeta, epsilon, status
@@ -339,7 +339,7 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
     creep = 2.0 * delta_abs * kappa / (mu * lam)
     # 1 + epsilon - beta - creep leaves beta no better than that: asking for more would chase
     # rounding
-    return brent(_EQ_10, (1.0 + epsilon, creep, zeta, alpha), 0.0, 1.0, 0.5 * _EPS)
+    return brent(_EQ_10, (1.0 + epsilon, creep, zeta, alpha), 0.0, 0.5 * _EPS)
 
 
 @kernel
@@ -393,19 +393,21 @@ def direct_moment(kappa, lam, epsilon, zeta, alpha):
 
 
 @kernel
-def direct_state(alpha, n, request):
-    """Evaluate by the equations as printed what is requested of one state; V = 0 is the limit V ->
-    0+ of Sect. 3.4.
+def direct_loop(alpha, request, count):
+    """Evaluate by the equations as printed what is requested of ``count`` states; V = 0 is the
+    limit V -> 0+ of Sect. 3.4.
 
-    alpha : float, T_epsilon/T_sigma of the material, >= 1, dimensionless.
-    n : int, index of the state, >= 0; not checked.
+    alpha : T_epsilon/T_sigma, >= 1, dimensionless, (1,), or (count,) with one for each state.
     request : :class:`.law_record.Request`: states (V finite), and for each quantity its
         row of ``out``, -1 if it is not requested.  Of lam, zeta, epsilon, delta_star, delta,
-        full_slip (1.0 or 0.0), beta, Q and M those that are requested are written into column n +
-        ``first``, dimensionless; other quantities never are.
+        full_slip (1.0 or 0.0), beta, Q and M those that are requested are written for state n into
+        column n + ``first``, dimensionless; other quantities never are.  The states are evaluated
+        in their own order: ``order`` is not read.
+    count : int, number of states; 0 writes nothing.
 
-    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta was not found.  The
-    quantities are written in that case too, and are not to be used.
+    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta of at least one state
+    was not found; all states are evaluated and written in that case too, and the quantities of that
+    state are not to be used.
 
     At V = 0: lam = 1, zeta = inf, epsilon = M = 0, beta = 1 - s and |Q| = mu s (2 - s), with
     s = |delta|/delta_star; delta, if omega is given, is 0 for omega = 0 and else infinite.  In full
@@ -413,57 +415,41 @@ def direct_state(alpha, n, request):
     where that is 0.
     """
     to = request.to
-    state = read_state(request.states, n)
-    kappa = state.kappa
-    mu = state.mu
-    speed = abs(state.V)
-    slip, delta = slip_and_creepage(state)
-    status = stick_status = OK
-    lam = 1.0
-    zeta = np.inf
-    epsilon = M = 0.0
-    if speed > 0.0:
-        lam, zeta, epsilon, status = direct_contact_length(kappa * speed, alpha)
-        M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)
-    delta_star = direct_delta_star(kappa, mu, lam, epsilon)
-    full_slip = abs(delta) >= delta_star
-    # of full slip, also for an infinite delta at V = 0
-    beta = 0.0
-    Q = mu
-    # at V = 0 zeta is infinite, which Eqs. (10) and (15) cannot take: their limit
-    if not full_slip and speed == 0.0:
-        s = abs(delta) / delta_star
-        beta = 1.0 - s
-        Q = mu * s * (2.0 - s)
-    elif not full_slip:
-        beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, alpha)
-        Q = direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
-    write_field(to.lam, lam, n, request)
-    write_field(to.zeta, zeta, n, request)
-    write_field(to.epsilon, epsilon, n, request)
-    write_field(to.delta_star, delta_star, n, request)
-    write_field(to.delta, delta, n, request)
-    write_field(to.full_slip, 1.0 if full_slip else 0.0, n, request)
-    write_field(to.beta, beta, n, request)
-    write_field(to.Q, np.sign(slip) * Q, n, request)
-    write_field(to.M, M, n, request)
-    return status | stick_status
-
-
-@kernel
-def direct_loop(alpha, request, count):
-    """Evaluate what is requested of ``count`` states by the equations as printed.
-
-    alpha : T_epsilon/T_sigma, >= 1, dimensionless, (1,), or (count,) with one for each state.
-    request : :class:`.law_record.Request`, as of :func:`direct_state`; column n +
-        ``first`` of ``out`` is written for state n.  The states are evaluated in their own order:
-        ``order`` is not read.
-    count : int, number of states; 0 writes nothing.
-
-    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta of at least one state
-    was not found; all states are evaluated and written in that case too.
-    """
-    worst = OK
+    status = stick_status = worst = OK
     for n in range(count):
-        worst |= direct_state(element(alpha, n), n, request)
+        own_alpha = element(alpha, n)
+        state = read_state(request.states, n)
+        kappa = state.kappa
+        mu = state.mu
+        speed = abs(state.V)
+        slip, delta = slip_and_creepage(state)
+        lam = 1.0
+        zeta = np.inf
+        epsilon = M = 0.0
+        if speed > 0.0:
+            lam, zeta, epsilon, status = direct_contact_length(kappa * speed, own_alpha)
+            M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, own_alpha)
+        delta_star = direct_delta_star(kappa, mu, lam, epsilon)
+        full_slip = abs(delta) >= delta_star
+        # of full slip, also for an infinite delta at V = 0
+        beta = 0.0
+        Q = mu
+        # at V = 0 zeta is infinite, which Eqs. (10) and (15) cannot take: their limit
+        if not full_slip and speed == 0.0:
+            s = abs(delta) / delta_star
+            beta = 1.0 - s
+            Q = mu * s * (2.0 - s)
+        elif not full_slip:
+            beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, own_alpha)
+            Q = direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
+        write_field(to.lam, lam, n, request)
+        write_field(to.zeta, zeta, n, request)
+        write_field(to.epsilon, epsilon, n, request)
+        write_field(to.delta_star, delta_star, n, request)
+        write_field(to.delta, delta, n, request)
+        write_field(to.full_slip, 1.0 if full_slip else 0.0, n, request)
+        write_field(to.beta, beta, n, request)
+        write_field(to.Q, np.sign(slip) * Q, n, request)
+        write_field(to.M, M, n, request)
+        worst |= status | stick_status
     return worst

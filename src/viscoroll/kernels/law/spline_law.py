@@ -505,34 +505,17 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     out[1] = half_space + cylinder
     out[2] = half_space
     out[3] = cylinder
-    if scene.slopes:
-        _slopes_to_caller(scene, V, delta, at, table, out)
+    if scene.slopes:  # in the units of the caller: times that of the load over that of V or omega
+        Q, of_half_space, of_cylinder = _sloped_loads(scene.mu, kappa, at, table)
+        for load, unit, to_V, to_omega in (
+            (Q, scene.Q, 4, 5),
+            (of_half_space, scene.M, 6, 8),
+            (of_cylinder, scene.M, 7, 9),
+        ):
+            dV, domega = _at_fixed_omega(load, V, delta)
+            out[to_V] = unit / scene.V * dV
+            out[to_omega] = unit / scene.omega * domega
     return 0
-
-
-@inline_kernel
-def _slopes_to_caller(scene, V, delta, at, table, out):
-    """Write the slopes of a state in the units of the caller into ``out``, (RESULTS,).
-
-    scene : TABLE record, of which kappa, mu and the units are read.
-    V, delta : floats, speed, of any sign, and creepage, dimensionless.
-    at : :class:`TablePlace` of the state.
-    table : vector of :mod:`.coupled_splines`.
-    out : vector of RESULTS numbers, of which 4 to 9 are written, in the order of
-        :func:`.law_callables._evaluate`: dQ/dV at fixed omega, dQ/domega at fixed V, then slopes of
-        M_half_space and M_cylinder over V, then over omega.
-    Returns nothing.
-    """
-    # a slope in the units of the caller: times the unit of the load over that of V or omega
-    Q, half_space, cylinder = _sloped_loads(scene.mu, scene.kappa, at, table)
-    for load, unit, to_V, to_omega in (
-        (Q, scene.Q, 4, 5),
-        (half_space, scene.M, 6, 8),
-        (cylinder, scene.M, 7, 9),
-    ):
-        dV, domega = _at_fixed_omega(load, V, delta)
-        out[to_V] = unit / scene.V * dV
-        out[to_omega] = unit / scene.omega * domega
 
 
 def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
