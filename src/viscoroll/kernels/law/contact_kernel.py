@@ -18,17 +18,7 @@ import numpy as np
 
 from ..numerics.intrinsics import bits_to_float, float_to_bits
 from ..numerics.jit import inline_kernel, kernel
-from .cover_law import (
-    OverSpeed,
-    PairOverSpeed,
-    Pairs,
-    asymmetry_at,
-    cylinder_at,
-    length_change,
-    pairs_at,
-    shear_reaction,
-    total_at,
-)
+from .cover_law import asymmetry_at, length_change, pairs_at, shear_reaction
 from .law_functions import (
     RowPosition,
     body_moments,
@@ -92,12 +82,6 @@ from .traction_functions import (
     _Q,
     #: The asymmetry c of a cover.
     _ASYMMETRY,
-    #: g of a cover (:mod:`.cover_law`).
-    _EXCESS,
-    #: f_c, the part of the cylinder.
-    _FREE_CYLINDER,
-    #: g_c.
-    _EXCESS_CYLINDER,
     #: The factor by which M_half_space of a cover falls with Q.
     _FACTOR,
     #: That of M_cylinder.
@@ -369,54 +353,26 @@ def _is_cover(cover_rows):
 
 
 @inline_kernel
-def _write_pairs(c, position, cover_rows, scratch, request):
+def _write_cover(c, position, L, cover_rows, scratch, request):
     """Store in the scratch what the rows of a cover give besides at the speed of a state.
 
     c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
     position : :class:`.law_functions.RowPosition` of u.
+    L : float, 2 kappa delta_star/mu of the state.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
-    half-spaces, of which delta_0 = 0 alone is written.
-    scratch : (SCRATCH_SIZE,) doubles: u of the state is read.  Written are f and g, and where a
-        moment is requested f_c and g_c; :func:`_write_cover` reads them.
+    half-spaces, of which 2 kappa delta_0 = 0 alone is written.
+    scratch : (SCRATCH_SIZE,) doubles: u, kappa and mu of the state are read.  2 kappa delta_0 and
+        the asymmetry c are written, and where a moment is requested the factors and excesses of
+        :class:`.cover_law.Reaction` of both bodies.
     request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
     if cover_rows is None:
         scratch[_FREE_CREEP + c] = 0.0
     else:
-        u = scratch[_U + c]
-        # values alone, without derivatives
-        total = total_at(position, u, cover_rows)
-        scratch[_FREE_CREEP + c] = total.first.value
-        scratch[_EXCESS + c] = total.second.value
-        if asks_for_moments(request.to):
-            cylinder = cylinder_at(total, position, u, cover_rows)
-            scratch[_FREE_CYLINDER + c] = cylinder.first.value
-            scratch[_EXCESS_CYLINDER + c] = cylinder.second.value
-
-
-@inline_kernel
-def _write_cover(c, cover_rows, scratch, request):
-    """Store what the pairs of :func:`_write_pairs` mean: the asymmetry, and the factors of Q in M.
-
-    No polynomial is evaluated here, so that a loop over states becomes vector instructions.
-
-    c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
-    cover_rows : of any cover among those of the block: it is only asked whether it is None, of
-        half-spaces, and then nothing is written; no number of it is read.
-    scratch : (SCRATCH_SIZE,) doubles: kappa, mu, L, f and g of the state are read, and f_c and g_c
-        where a moment is requested.  The asymmetry c is written, and where a moment is requested
-        the factors and excesses of :class:`.cover_law.Reaction` of both bodies.
-    request : :class:`.law_record.Request`, of which ``to`` is read.
-    Returns nothing.
-    """
-    if cover_rows is not None:
-        total = _values(scratch[_FREE_CREEP + c], scratch[_EXCESS + c])
-        # of an earlier state where no moment is requested: nothing below reads it then
-        cylinder = _values(scratch[_FREE_CYLINDER + c], scratch[_EXCESS_CYLINDER + c])
-        pairs = Pairs(total, cylinder)
+        pairs = pairs_at(position, scratch[_U + c], cover_rows)
         mu = scratch[_MU + c]
-        L = scratch[_L + c]
+        scratch[_FREE_CREEP + c] = pairs.total.first.value
         # 0 for the derivatives of L, here and below: values alone are read, which do not need them
         scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
         if asks_for_moments(request.to):
@@ -425,12 +381,6 @@ def _write_cover(c, cover_rows, scratch, request):
             scratch[_CYLINDER_FACTOR + c] = reaction.cylinder
             scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
             scratch[_CYLINDER_FACTOR_EXCESS + c] = reaction.cylinder_excess
-
-
-@inline_kernel
-def _values(first, second):
-    """Return two functions of speed without their slopes, as :class:`.cover_law.PairOverSpeed`."""
-    return PairOverSpeed(OverSpeed(first, 0.0, 0.0), OverSpeed(second, 0.0, 0.0))
 
 
 @inline_kernel
@@ -514,7 +464,7 @@ def contact_loop(laws, request, scratch, count):
                 position = _position(_POSITION, c, scratch)
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
-                _write_pairs(c, position, law.cover_rows, scratch, request)
+                _write_cover(c, position, functions.L, law.cover_rows, scratch, request)
                 # M without traction: m is M/V and the factor V; in the fast limit, where M/V may
                 # underflow, M/(V z) and V z
                 factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
@@ -523,7 +473,6 @@ def contact_loop(laws, request, scratch, count):
             # cover, and all are or none is
             for k in range(begin, end):
                 c = np.uint64(k)
-                _write_cover(c, laws[0].cover_rows, scratch, request)
                 L = scratch[_L + c]
                 D = signed_creep(
                     L,

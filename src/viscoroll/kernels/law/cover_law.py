@@ -283,53 +283,28 @@ def pairs_at(position, u, cover_rows):
         zero = OverSpeed(0.0, 0.0, 0.0)
         none = PairOverSpeed(zero, zero)
         return Pairs(none, none)
-    total = total_at(position, u, cover_rows)
-    return Pairs(total, cylinder_at(total, position, u, cover_rows))
-
-
-@inline_kernel
-def total_at(position, u, cover_rows):
-    """Return f and g of both bodies together, as :class:`PairOverSpeed`.
-
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
-    """
-    # rows have the sum, the head both parts
-    if position.row < 0:
-        free = _limit_at(FREE_HALF_SPACE_LIMIT, u, cover_rows)
-        excess = _limit_at(EXCESS_HALF_SPACE_LIMIT, u, cover_rows)
-        return PairOverSpeed(
-            _weighted_sum(free, 1.0, _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows)),
-            _weighted_sum(excess, 1.0, _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows)),
-        )
-    return _pair_at(TOTAL, position, cover_rows)
-
-
-@inline_kernel
-def cylinder_at(total, position, u, cover_rows):
-    """Return f_c and g_c, the parts of the cylinder in f and g, as :class:`PairOverSpeed`.
-
-    total : :class:`PairOverSpeed` of f and g at the speed, of :func:`total_at`.
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
-    """
     # 0, 1 or -1; interpolated over the thickness it has rounding, so that it is compared with
     # +-0.5.
     part = cover_rows[CYLINDER_PART]
+    # rows have the sums and the parts of the cylinder, the head the parts of both bodies
+    if position.row < 0:
+        free = _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows)
+        excess = _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows)
+        cylinder = PairOverSpeed(free, excess)
+        total = PairOverSpeed(
+            _weighted_sum(_limit_at(FREE_HALF_SPACE_LIMIT, u, cover_rows), 1.0, free),
+            _weighted_sum(_limit_at(EXCESS_HALF_SPACE_LIMIT, u, cover_rows), 1.0, excess),
+        )
+    else:
+        total = _pair_at(TOTAL, position, cover_rows)
+        cylinder = _pair_at(CYLINDER, position, cover_rows) if part < -0.5 else total
     if part > -0.5:  # One body alone has a layer: all is the cylinder's, or nothing.
         zero = OverSpeed(0.0, 0.0, 0.0)
         weight = 1.0 if part > 0.5 else 0.0
-        return PairOverSpeed(
+        cylinder = PairOverSpeed(
             _weighted_sum(zero, weight, total.first), _weighted_sum(zero, weight, total.second)
         )
-    if position.row < 0:
-        return PairOverSpeed(
-            _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows),
-            _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows),
-        )
-    return _pair_at(CYLINDER, position, cover_rows)
+    return Pairs(total, cylinder)
 
 
 @inline_kernel

@@ -44,7 +44,7 @@ Fields = namedtuple(
 #: costs little for each, and few enough that their scratch stays in the first cache.
 TOGETHER = 64
 #: Numbers of the scratch of :func:`.contact_kernel.contact_loop`.
-SCRATCH_SIZE = 24 * TOGETHER
+SCRATCH_SIZE = 21 * TOGETHER
 
 
 class State(NamedTuple):
