@@ -102,57 +102,40 @@ class FreeCreep(NamedTuple):
 
 
 @inline_kernel
-def fast_moment(shift, u, cover_rows):
-    """Return M/V divided by z, without the term alpha z W/8 of :func:`.law_functions._fast_terms`,
-    in the fast limit.
+def fast_value(index, x, half_space, cover_rows):
+    """Return a function beyond the last row of the law, where the fast limit holds: lam or eta/F.
 
-    The fast limit holds beyond the last row of the law, and z = lam_fast/(2 u) is the ``scale`` of
-    M/V there.
+    index : int, index in the head of its limit: LAM_LIMIT or ETA_OVER_F_LIMIT.
+    x : float, u of lam, v = 1/F(eta), which may be infinite, of eta/F; dimensionless, > 0; read of
+        a cover alone.
+    half_space : float, the function of a half-space, dimensionless, which is the result if
+        ``cover_rows`` is None; else not read.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces.
+    Returns a float, dimensionless; of a cover the limit and a term in 1/x.
+    """
+    if cover_rows is None:
+        return half_space
+    return _limit_at(index, x, cover_rows).value
 
-    shift : float, this part of a half-space, dimensionless, which is the result if ``cover_rows``
-        is None; else not read.
+
+@inline_kernel
+def fast_quotient(index, u, half_space, cover_rows):
+    """Return a function that vanishes in the fast limit, beyond the last row of the law: epsilon,
+    or M/V divided by z without the term alpha z W/8 of :func:`.law_functions._fast_terms`.
+
+    index : int, index in the head of its product with u: EPSILON_LIMIT or MOMENT_LIMIT.
     u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
+    half_space : float, the function of a half-space, dimensionless, which is the result if
+        ``cover_rows`` is None; else not read.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
         half-spaces.
     Returns a float, dimensionless, which -> 0 for u -> infinity: of a cover as 1/u, of half-spaces
     as (ln u)/u.
     """
     if cover_rows is None:
-        return shift
-    return cover_rows[MOMENT_LIMIT] / u
-
-
-@inline_kernel
-def fast_lengths(lam, shift, u, cover_rows):
-    """Return length and shift of the contact beyond the last row of the law, where the fast limit
-    holds.
-
-    lam, shift : floats, length divided by l0 and shift epsilon of a half-space, dimensionless,
-        which are the result if ``cover_rows`` is None; else not read.
-    u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
-        half-spaces.
-    Returns (lam, epsilon), floats, dimensionless; epsilon is in half contact lengths.
-    """
-    if cover_rows is None:
-        return lam, shift
-    return _limit_at(LAM_LIMIT, u, cover_rows).value, cover_rows[EPSILON_LIMIT] / u
-
-
-@inline_kernel
-def fast_eta_over_F(eta_over_F, v, cover_rows):
-    """Return eta/F beyond the last row of the law, where the fast limit holds.
-
-    eta_over_F : float, eta/F of a half-space, dimensionless, which is the result if ``cover_rows``
-        is None; else not read.
-    v : float, 1/F(eta), dimensionless, > 0, which may be infinite; read of a cover alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
-        half-spaces.
-    Returns a float, dimensionless; of a cover its limit lam/L for v -> infinity and a term in 1/v.
-    """
-    if cover_rows is None:
-        return eta_over_F
-    return _limit_at(ETA_OVER_F_LIMIT, v, cover_rows).value
+        return half_space
+    return cover_rows[index] / u
 
 
 class OverSpeed(NamedTuple):

@@ -50,7 +50,15 @@ import numpy as np
 from ..numerics.intrinsics import bits_to_float, float_to_bits, unlikely
 from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import evaluate_pair, evaluate_secants, evaluate_single
-from .cover_law import fast_eta_over_F, fast_lengths, fast_moment, pairs_at
+from .cover_law import (
+    EPSILON_LIMIT,
+    ETA_OVER_F_LIMIT,
+    LAM_LIMIT,
+    MOMENT_LIMIT,
+    fast_quotient,
+    fast_value,
+    pairs_at,
+)
 from .law_record import (
     ALPHA,
     BODY_MOMENTS,
@@ -206,7 +214,7 @@ def length_and_moment(position, u, law):
         # L = lam (1 + shift); u d(decrease)/du = -(decrease - 4 part), again by these two slopes
         dL = -(lam / u) * decrease
         ddL = lam / u * (2.0 * decrease - 4.0 * part) / u
-        moment = fast_moment(shift, u, law.cover_rows)
+        moment = fast_quotient(MOMENT_LIMIT, u, shift, law.cover_rows)
         # d(u z m)/du with u z constant: z u dm/du.  m is moment + part with u d(moment)/du =
         # 4 part - moment: of half-spaces moment is shift, of a cover it is in 1/u and part is 0.
         return LengthAndMoment(
@@ -255,7 +263,8 @@ def lam_and_epsilon(position, u, law):
     """
     if in_fast_limit(position):
         _, shift, _ = _fast_terms(u, FAST_TOTAL, law)
-        return fast_lengths(law.rows[LAM_FAST], shift, u, law.cover_rows)
+        lam = fast_value(LAM_LIMIT, u, law.rows[LAM_FAST], law.cover_rows)
+        return lam, fast_quotient(EPSILON_LIMIT, u, shift, law.cover_rows)
     return evaluate_pair(law.rows, ensure_part(LAM_EPSILON, position.row, law), position.t)[:2]
 
 
@@ -364,7 +373,8 @@ def eta_over_F(position, v, law):
     for a cover it is lam/L of the speed at which v = 2 u/L.
     """
     if in_fast_limit(position):
-        return fast_eta_over_F(_half_space_eta_over_F(1.0 / v, law)[0], v, law.cover_rows)
+        half_space, _ = _half_space_eta_over_F(1.0 / v, law)
+        return fast_value(ETA_OVER_F_LIMIT, v, half_space, law.cover_rows)
     return evaluate_single(law.rows, ensure_part(ETA_OVER_F, position.row, law), position.t)[0]
 
 
