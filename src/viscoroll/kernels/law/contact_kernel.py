@@ -307,9 +307,7 @@ def _write_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     over_delta = 0.0
     over_omega = 0.0
     if slopes_of_Q:
-        over_V, over_delta, over_omega = Q_slopes(
-            u, functions.L, functions.dL, scratch[_D + c], state, law
-        )
+        over_V, over_delta, over_omega = Q_slopes(u, functions, pairs, scratch[_D + c], state, law)
         write_field(to.dQ_dV, over_V, n, request)
         write_field(to.dQ_ddelta, over_delta, n, request)
         write_field(to.dQ_domega, over_omega, n, request)

@@ -474,14 +474,14 @@ def length_change(Q, position, u, cover_rows):
 
 
 @inline_kernel
-def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
+def slopes_of_cover(over_u, over_D, D, functions, pairs, state, cover_rows):
     """Return the slopes of |Q|/mu at fixed creepage less that of free rolling, from those at fixed
     D.
 
     over_u, over_D : floats, slopes over u at fixed D and over D at fixed u, dimensionless.
     D : float, 2 kappa |d| delta_star/mu with the sign of the traction, finite.
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u, L, dL : floats, kappa |V|, 2 kappa delta_star/mu and its slope over u.
+    functions : :class:`.law_functions.LengthAndMoment` at the speed, of which L and dL are read.
+    pairs : :class:`Pairs` at the speed, of which ``total`` is read.
     state : :class:`.law_record.State`, of which mu and the sign of V are read.
     cover_rows : vector of the numbers that only a cover has, as in the module; None, for
         half-spaces, leaves both as they are.
@@ -491,7 +491,9 @@ def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
         return over_u, over_D
     # With D = L |d|, s = sign d and E = 2 kappa |delta - delta_0|/mu = D + s c D^2/L:
     # dE/dD = 1 + 2 c d at fixed u, and at fixed E dD/du = s d^2 (c L' - c' L)/(1 + 2 c d).
-    c = asymmetry_at(pairs_at(position, u, cover_rows), state.mu, L, dL, 0.0, cover_rows)
+    L = functions.L
+    dL = functions.dL
+    c = asymmetry_at(pairs, state.mu, L, dL, 0.0, cover_rows)
     d = (-D if state.V < 0.0 else D) / L
     over_creep = over_D / (1.0 + 2.0 * c.value * d)
     return over_u + np.sign(d) * over_creep * d * d * (c.value * dL - c.slope * L), over_creep

@@ -37,7 +37,6 @@ from .law_functions import (
     H_over_F2,
     H_over_F2_secants,
     eta_over_F,
-    free_creep_and_slopes,
     locate_row,
 )
 from .law_record import slip_and_creepage
@@ -135,7 +134,7 @@ def traction_slopes(u, L, dL, D, law):
     and where L or D is NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they
     are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
 
-    As in :func:`traction_over_mu`, mean slopes of H/F^2 and of its slope are used where D is below
+    As in :func:`signed_traction`, mean slopes of H/F^2 and of its slope are used where D is below
     L/16 or a difference would lose digits.  With them the slope over u is 0 at D = 0 and at u = 0;
     from D = L/16 on the plain formula holds at u = 0 too, unless a difference would lose digits.
     """
@@ -232,17 +231,18 @@ def signed_traction(position, v, u, L, signed_D, mu, law):
 
 
 @inline_kernel
-def Q_slopes(u, L, dL, D, state, law):
+def Q_slopes(u, functions, pairs, D, state, law):
     """Return the slopes of the traction Q, divided by the load P, over speed, creepage and angular
     velocity.
 
     u : float, kappa |V|, dimensionless, >= 0.
-    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless.
+    functions : :class:`.law_functions.LengthAndMoment` at the speed, of which L and dL are read.
+    pairs : :class:`.cover_law.Pairs` at the speed (:func:`.cover_law.pairs_at`), zeros of
+        half-spaces.
     D : float, L |d| with the sign of the traction, of :func:`signed_creep`,
         dimensionless; inf or -inf in full slip, where nothing else is read.
     state : :class:`.law_record.State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
-    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 and, of a
-    cover, ``cover_rows`` are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
 
     Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta
     or at fixed omega, whichever ``state`` has, the others at fixed V.  All are 0 in full slip,
@@ -250,12 +250,10 @@ def Q_slopes(u, L, dL, D, state, law):
     partial slip at V = 0 the last is infinite, since omega = V (1 + delta) then changes delta
     without bound, and so is the first if omega is given.
     """
-    if abs(D) >= L:
+    if abs(D) >= functions.L:
         return 0.0, 0.0, 0.0
-    over_u, over_D = traction_slopes(u, L, dL, abs(D), law)
-    over_u, over_D = slopes_of_cover(
-        over_u, over_D, D, locate_row(u, law), u, L, dL, state, law.cover_rows
-    )
+    over_u, over_D = traction_slopes(u, functions.L, functions.dL, abs(D), law)
+    over_u, over_D = slopes_of_cover(over_u, over_D, D, functions, pairs, state, law.cover_rows)
     # Q = +-mu |Q|/mu with D = 2 kappa |delta|/mu and u = kappa |V|; delta = omega/V - 1 at fixed V.
     # ``over_delta`` is the slope for V > 0; for V < 0 Q has the sign of -delta, and the slope the
     # opposite sign: dQ/domega = (dQ/ddelta)/V is over_delta/|V| for both.
@@ -265,7 +263,7 @@ def Q_slopes(u, L, dL, D, state, law):
     over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
     # From fixed delta - delta_0 to fixed delta: delta_0 of a cover changes with the speed, by
     # d delta_0/dV = (du/dV)/(2 kappa) d(2 kappa delta_0)/du, with du/dV = kappa for V > 0.
-    over_V -= 0.5 * over_delta * free_creep_and_slopes(u, law).slope
+    over_V -= 0.5 * over_delta * pairs.total.first.slope
     if state.creep_is_omega:  # d delta/dV = -omega/V^2 = -(1 + delta)/V at fixed omega
         over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
