@@ -129,30 +129,24 @@ def _state(c, scratch, request):
 
 
 @inline_kernel
-def _write_positions(arguments, positions, begin, end, laws, scratch):
-    """Locate the arguments u or v of some states of a block in the rows of their laws, and write
-    the positions into the scratch.
+def _write_position(x, place, c, law, scratch):
+    """Locate the argument u or v of a state of the block in the rows of its law, and write the
+    position into the scratch.
 
-    arguments : unsigned int, index in ``scratch`` of the arguments of column 0: _U or _STICK.
-    positions : unsigned int, index in ``scratch`` of the positions: _POSITION for u,
-    _STICK_POSITION for v.
-    begin, end : int, first column, which is the place of a state in its block, and the one after
-        the last; 0 <= begin <= end <= TOGETHER = 64, the states in a block.
-    laws : tuple of :class:`.law_record.Law`; the state in column k belongs to law k modulo their
-        number, which must have its material selected.
-    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.  Three numbers a state are written:
-        at ``positions`` the number of its row, an int (-1 beyond the last row) whose bits are
-        stored as a double; TOGETHER numbers further t; again TOGETHER further dt/dx.  With row -1,
-        which an infinite argument has too, t and dt/dx have no meaning; of a NaN t is NaN.
-    Returns nothing.
+    x : float, the argument, dimensionless, >= 0.
+    place : place of the positions in the scratch, _POSITION or _STICK_POSITION, of which three
+        numbers of the state are written: row, t and dt/dx.
+    c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
+    law : :class:`.law_record.Law` with the material of the state selected.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.
+    Returns the :class:`.law_functions.RowPosition`.
     """
-    for k in range(begin, end):
-        c = np.uint64(k)
-        position = locate_row(scratch[arguments + c], laws[k % len(laws)])
-        # the bits of the int, not its value: :func:`_position` reads them as an int again
-        scratch[positions + c] = bits_to_float(position.row)
-        scratch[positions + _T + c] = position.t
-        scratch[positions + _DT_DX + c] = position.dt_dx
+    position = locate_row(x, law)
+    # the bits of the int, not its value: :func:`_position` reads them as an int again
+    scratch[place + c] = bits_to_float(position.row)
+    scratch[place + _T + c] = position.t
+    scratch[place + _DT_DX + c] = position.dt_dx
+    return position
 
 
 @inline_kernel
@@ -454,34 +448,27 @@ def contact_loop(laws, request, scratch, count):
             end = begin + together if begin + together < size else size
             for k in range(begin, end):
                 select_material(laws[k % len(laws)], _index(first + k, request))
-            _write_positions(_U, _POSITION, begin, end, laws, scratch)
             for k in range(begin, end):
                 law = laws[k % len(laws)]
                 c = np.uint64(k)
                 u = scratch[_U + c]
-                position = _position(_POSITION, c, scratch)
+                position = _write_position(u, _POSITION, c, law, scratch)
                 functions = length_and_moment(position, u, law)
-                scratch[_L + c] = functions.L
-                _write_cover(c, position, functions.L, law.cover_rows, scratch, request)
+                L = functions.L
+                scratch[_L + c] = L
+                _write_cover(c, position, L, law.cover_rows, scratch, request)
                 # M without traction: m is M/V and the factor V; in the fast limit, where M/V may
                 # underflow, M/(V z) and V z
-                factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
+                state = _state(c, scratch, request)
+                factor = moment_factor(position, u, functions.scale, state)
                 write_field(to.M, factor * functions.m, _index(first + k, request), request)
-            # ``laws[0]`` for all states in this loop: of the law it is only asked whether it is a
-            # cover, and all are or none is
-            for k in range(begin, end):
-                c = np.uint64(k)
-                L = scratch[_L + c]
                 D = signed_creep(
-                    L,
-                    scratch[_FREE_CREEP + c],
-                    scratch[_ASYMMETRY + c],
-                    _state(c, scratch, request),
-                    laws[0].cover_rows,
+                    L, scratch[_FREE_CREEP + c], scratch[_ASYMMETRY + c], state, law.cover_rows
                 )
+                v = stick_argument(u, L, abs(D))
                 scratch[_D + c] = D
-                scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
-            _write_positions(_STICK, _STICK_POSITION, begin, end, laws, scratch)
+                scratch[_STICK + c] = v
+                _write_position(v, _STICK_POSITION, c, law, scratch)
             # of a cover Q is computed in any case, as M, lam and epsilon depend on it
             if to.Q >= 0 or _is_cover(laws[0].cover_rows):
                 for k in range(begin, end):
