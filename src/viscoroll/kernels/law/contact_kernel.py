@@ -152,7 +152,7 @@ def _write_position(x, place, c, law, scratch):
 @inline_kernel
 def _position(place, c, scratch):
     """Return the :class:`.law_functions.RowPosition` of a state of the block, as
-    :func:`_write_positions` has written it.
+    :func:`_write_position` has written it.
 
     place : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION
     for v.
@@ -424,10 +424,9 @@ def contact_loop(laws, request, scratch, count):
     :func:`signed_traction` and :func:`_write_other_fields`; M is 0 at V = 0 and has the sign of V.
 
     The states pass through the stages in blocks of TOGETHER: their numbers are copied; then come
-    the positions in the rows, the polynomials of the speed, creepage and position of v, and the
-    polynomials of the traction.  Each stage is a short loop over the states of a block.  So the
-    processor works on several states at once, stages without polynomials are compiled to vector
-    instructions, and what is requested is tested once for a block.
+    the polynomials of the speed, with the creepage and the positions in the rows; then those of the
+    traction; then what else is requested.  Each stage is a loop over the states of a block.  So the
+    processor works on several states at once, and what is requested is tested once for a block.
     """
     to = request.to
     others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)  # whether more than Q and M is asked
@@ -447,9 +446,8 @@ def contact_loop(laws, request, scratch, count):
         for begin in range(0, size, together):
             end = begin + together if begin + together < size else size
             for k in range(begin, end):
-                select_material(laws[k % len(laws)], _index(first + k, request))
-            for k in range(begin, end):
                 law = laws[k % len(laws)]
+                select_material(law, _index(first + k, request))
                 c = np.uint64(k)
                 u = scratch[_U + c]
                 position = _write_position(u, _POSITION, c, law, scratch)
