@@ -234,8 +234,6 @@ _BLOCK_OF_MATERIALS = 1 << 8
 #: other, each would wait for its own numbers, which took half as long again; more than four gain
 #: nothing.
 _ALPHAS_TOGETHER = 4
-#: Most states of one law that are evaluated without blocks and threads.
-_FEW = 64
 #: Order of states as they are.
 _NO_ORDER = np.empty(0, np.int64)
 #: Largest kappa |V|: beyond it zeta underflows.
@@ -393,6 +391,7 @@ def evaluate_law(
             order = sort_by_octave(alpha, kappa, V)
         given = states.State(kappa=kappa, mu=mu, V=V, creep=creep, creep_is_omega=creep_is_omega)
         request = states.Request(states=given, order=order, to=rows, out=out, first=start)
+        scratch = np.empty(states.SCRATCH_SIZE)
         if record and record.table is not None:
             from ..kernels.law.spline_law import table_loop
 
@@ -406,7 +405,7 @@ def evaluate_law(
                     f"{stop - 1}, counted from 0: use method='table'"
                 )
         elif names != (UNSTEADY,):
-            contact_loop(laws, request, stop - start)
+            contact_loop(laws, request, scratch, stop - start)
         if UNSTEADY not in names:
             return
         N = out[names.index(UNSTEADY), start:stop]
@@ -418,11 +417,11 @@ def evaluate_law(
             # the state has no table of N: its zeta, and N by the modes at that zeta
             zeta = np.empty((1, stop - start))
             request = request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0)
-            contact_loop(laws, request, stop - start)
+            contact_loop(laws, request, scratch, stop - start)
             N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
     # few states of one law: no blocks, threads and readers, which would take longer than the states
-    if count <= _FEW and record:
+    if count <= states.TOGETHER and record:
         numbers = broadcast_rows(arrays, shape)
         numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)
         evaluate_block(0, count, *numbers)

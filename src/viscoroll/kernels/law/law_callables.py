@@ -30,14 +30,16 @@ from numpy.typing import NDArray
 from ..numerics.intrinsics import floats_at, function_address, integers_at, record_at, record_type
 from ..numerics.jit import inline_kernel, kernel
 from ..records import LoadsAndSlopes
-from .contact_kernel import evaluate_state, traction_of
-from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE
-from .law_functions import body_moments, moment_factor
+from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE, asymmetry_at, pairs_at
+from .law_functions import body_moments, length_and_moment, locate_row, moment_factor
 from .law_record import PARTS_PER_ROW, ROW_SIZE, Law, State
 from .traction_functions import (
     Q_slopes,
     moment_slope,
     moment_slope_over_V,
+    signed_creep,
+    signed_traction,
+    stick_argument,
     traction_on_moments,
 )
 
@@ -141,26 +143,31 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     if not (u <= MAX_U and abs(omega) < np.inf):  # False for NaN too
         return refuse(out)
     state = State(kappa=scene.kappa, mu=scene.mu, V=V, creep=omega, creep_is_omega=True)
-    at = evaluate_state(state, u, law)
-    functions = at.functions
-    factor = moment_factor(at.position, u, functions.scale, state)
-    out[0] = traction_of(at, law)
+    position = locate_row(u, law)
+    functions = length_and_moment(position, u, law)
+    factor = moment_factor(position, u, functions.scale, state)
+    pairs = pairs_at(position, u, cover_rows)  # zeros of half-spaces, as what follows from them
+    free_creep = pairs.total.first.value
+    c = asymmetry_at(pairs, state.mu, functions.L, 0.0, 0.0, cover_rows).value
+    D = signed_creep(functions.L, free_creep, c, state, cover_rows)
+    v = stick_argument(u, functions.L, abs(D))
+    out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
     # What the traction changes in the moments: nothing of half-spaces, where it is -0.0, which
     # changes no bit of a sum.
-    change = traction_on_moments(at.pairs, functions, out[0], state, cover_rows)
+    change = traction_on_moments(pairs, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
     # like bodies: half of M and of its slope each; M of half-spaces does not depend on omega
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um
     out[8] = out[9] = 0.0
     if scene.unlike:
-        half_space, cylinder, out[6], out[7] = body_moments(at.position, u, law)
+        half_space, cylinder, out[6], out[7] = body_moments(position, u, law)
         out[2] = factor * half_space + change.half_space
         out[3] = factor * cylinder + change.cylinder
     # Slopes in the units of the caller: those of a load over V or omega, times the unit of the load
     # over that of V or omega.  ``out[0]`` is still dimensionless.
     if scene.slopes:
-        out[4], _, out[5] = Q_slopes(u, functions, at.pairs, at.D, state, law)
+        out[4], _, out[5] = Q_slopes(u, functions, pairs, D, state, law)
         if cover_rows is not None:
             out[6] += moment_slope_over_V(change.half_space_du, change.half_space_dQ, out[4], state)
             out[7] += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, out[4], state)

@@ -40,6 +40,12 @@ Fields = namedtuple(
     defaults=[-1] * 29,
 )
 
+#: States that pass through the stages of the evaluation together: enough that a loop over them
+#: costs little for each, and few enough that their scratch stays in the first cache.
+TOGETHER = 64
+#: Numbers of the scratch of :func:`.contact_kernel.contact_loop`.
+SCRATCH_SIZE = 21 * TOGETHER
+
 
 class State(NamedTuple):
     """One state of the contact, dimensionless; or arrays of states, each of length 1 or with one
