@@ -146,56 +146,6 @@ def make_mesh(c, spots, used, contact):
 
 
 @kernel
-def scale_mesh(c, contact):
-    """Scale a mesh to another half length about its middle, x = 0.
-
-    c : float, the new half length, > 0.
-    contact : :class:`Contact`, whose nodes and places of collocation are changed.
-    Returns nothing; parameters of the nodes stay.
-    """
-    nodes = contact.nodes
-    at = contact.at
-    factor = 2.0 * c / (nodes[at.size] - nodes[0])
-    for n in range(at.size):
-        nodes[n] *= factor
-        at[n] *= factor
-    nodes[at.size] *= factor
-
-
-@inline_kernel
-def _local_part(local, h):
-    """Return the part of the coupling that acts at the middle of an element of length h as if at
-    once, a float, dimensionless.
-
-    local : (modes, 2), strength and length (divided by l0) of each, with 0 for the length of the
-        instantaneous one.
-    h : float, length of the element divided by l0, > 0.
-
-    It is the integral of the memory times what linear tractions leave out: the parabola that is 1
-    there and 0 at the ends of the element, less its mean 2/3, which the values at the nodes make up
-    for.  With r = h/(2 length) the integral of exp(-s) (1/3 - s^2/r^2) over s from 0 to r, which is
-    (1 - e)/3 - (2 - e (r^2 + 2 r + 2))/r^2 with e = exp(-r).
-    """
-    found = 0.0
-    for k in range(local.shape[0]):
-        length = local[k, 1]
-        r = 0.5 * h / length if length > 0.0 else np.inf
-        # Where terms of the closed form cancel, the first term of its series, r^2/12; where exp(-r)
-        # is below rounding, or r infinite, the form without it, in which r^2 is not formed: it
-        # might overflow.
-        if r < _SMALL_RATIO:
-            found += local[k, 0] * r * r / 12.0
-        elif r > _LARGE_RATIO:
-            found += local[k, 0] * (1.0 / 3.0 - (2.0 / r) / r)
-        else:
-            decay = math.exp(-r)
-            found += local[k, 0] * (
-                (1.0 - decay) / 3.0 - (2.0 - decay * (r * (r + 2.0) + 2.0)) / (r * r)
-            )
-    return found
-
-
-@kernel
 def _add_local(local, contact):
     """Add to the local part of the coupling what linear tractions leave out, by the values at four
     nodes.
@@ -204,13 +154,35 @@ def _add_local(local, contact):
         instantaneous one.
     contact : :class:`Contact`, whose matrix C is changed: row e belongs to the place in element e.
     The tractions are odd about the two outer nodes, in the parameter of the mesh.  Returns nothing.
+
+    The part of the coupling that acts at the middle of an element of length h as if at once is the
+    integral of the memory times what linear tractions leave out: the parabola that is 1 there and 0
+    at the ends of the element, less its mean 2/3, which the values at the nodes make up for.  With
+    r = h/(2 length) the integral of exp(-s) (1/3 - s^2/r^2) over s from 0 to r, which is (1 - e)/3
+    - (2 - e (r^2 + 2 r + 2))/r^2 with e = exp(-r).
     """
     nodes = contact.nodes
     C = contact.C
     last = contact.at.size - 1
     for e in range(last + 1):
         h = nodes[e + 1] - nodes[e]
-        part = _local_part(local, h)
+        part = 0.0
+        for k in range(local.shape[0]):
+            strength = local[k, 0]
+            length = local[k, 1]
+            r = 0.5 * h / length if length > 0.0 else np.inf
+            # Where terms of the closed form cancel, the first term of its series, r^2/12; where
+            # exp(-r) is below rounding, or r infinite, the form without it, in which r^2 is not
+            # formed: it might overflow.
+            if r < _SMALL_RATIO:
+                part += strength * r * r / 12.0
+            elif r > _LARGE_RATIO:
+                part += strength * (1.0 / 3.0 - (2.0 / r) / r)
+            else:
+                decay = math.exp(-r)
+                part += strength * (
+                    (1.0 - decay) / 3.0 - (2.0 - decay * (r * (r + 2.0) + 2.0)) / (r * r)
+                )
         # What linear tractions leave out at the place: the cubic through four nodes, with weights
         # (-1, 9, 9, -1)/16 in the middle of the element, less the linear interpolation, with
         # weights 1 - ``ahead`` and ``ahead``.  Column n belongs to node n + 1.
@@ -274,18 +246,13 @@ def assemble(kernels, contact):
             third[j] = a2
         # The traction of inner node n is 1 at node n + 1 and falls linearly to 0 at its neighbours:
         # its second derivative is three impulses, with which the antiderivative is multiplied.
-        for n in range(N - 1):
-            behind = 1.0 / (nodes[n + 1] - nodes[n])
-            ahead = 1.0 / (nodes[n + 2] - nodes[n + 1])
-            contact.H[i, n] = behind * (first[n] - first[n + 1]) + ahead * (
-                first[n + 2] - first[n + 1]
-            )
-            contact.T[i, n] = behind * (second[n] - second[n + 1]) + ahead * (
-                second[n + 2] - second[n + 1]
-            )
-            contact.C[i, n] = behind * (third[n] - third[n + 1]) + ahead * (
-                third[n + 2] - third[n + 1]
-            )
+        for matrix, values in ((contact.H, first), (contact.T, second), (contact.C, third)):
+            for n in range(N - 1):
+                behind = 1.0 / (nodes[n + 1] - nodes[n])
+                ahead = 1.0 / (nodes[n + 2] - nodes[n + 1])
+                matrix[i, n] = behind * (values[n] - values[n + 1]) + ahead * (
+                    values[n + 2] - values[n + 1]
+                )
     _add_local(kernels.local, contact)
 
 

@@ -18,17 +18,7 @@ import numpy as np
 
 from ..numerics.intrinsics import bits_to_float, float_to_bits
 from ..numerics.jit import inline_kernel, kernel
-from .cover_law import (
-    OverSpeed,
-    PairOverSpeed,
-    Pairs,
-    asymmetry_at,
-    cylinder_at,
-    length_change,
-    pairs_at,
-    shear_reaction,
-    total_at,
-)
+from .cover_law import asymmetry_at, length_change, pairs_at, shear_reaction
 from .law_functions import (
     RowPosition,
     body_moments,
@@ -74,7 +64,7 @@ from .traction_functions import (
     _U,
     #: L = 2 kappa delta_star/mu.
     _L,
-    #: 2 kappa delta_0, from the creepage of free rolling.
+    #: f = 2 kappa delta_0, from the creepage of free rolling.
     _FREE_CREEP,
     #: D with a sign (:func:`signed_creep`).
     _D,
@@ -92,14 +82,6 @@ from .traction_functions import (
     _Q,
     #: The asymmetry c of a cover.
     _ASYMMETRY,
-    #: f of a cover (:mod:`.cover_law`).
-    _FREE,
-    #: g of it.
-    _EXCESS,
-    #: f_c, the part of the cylinder.
-    _FREE_CYLINDER,
-    #: g_c.
-    _EXCESS_CYLINDER,
     #: The factor by which M_half_space of a cover falls with Q.
     _FACTOR,
     #: That of M_cylinder.
@@ -207,7 +189,8 @@ def _write_other_fields(n, c, law, scratch, request):
     transit time divided by T_ref), epsilon (shift of the contact ahead of the axis, in half contact
     lengths), beta (stick zone divided by the contact length), dQ_dV, dQ_ddelta, dQ_domega, dM_dV,
     dM_ddelta and dM_domega, M of half-space and cylinder with their slopes in V and omega, and
-    factors and excesses by which shear acts back on both (:func:`_write_reaction`).
+    factors of Q (``reaction_half_space``, ``reaction_cylinder``) and of Q |Q|/mu (``excess_...``)
+    that are subtracted from M of a body on a cover, of either sign.
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta
     and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded
@@ -221,20 +204,20 @@ def _write_other_fields(n, c, law, scratch, request):
     v = scratch[_STICK + c]
     position = _position(_POSITION, c, scratch)
     stick_position = _position(_STICK_POSITION, c, scratch)
-    write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, request)
+    delta_star = 0.5 * state.mu / state.kappa * L
+    delta_0 = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
+    # The onsets are delta_0 + delta_star (c -+ 1): d = -1 and 1 in d + c d^2 of cover_law.
+    shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
+    write_field(to.delta_star, delta_star, n, request)
     write_field(to.delta, slip_and_creepage(state)[1], n, request)
-    write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
-    if max(to.delta_minus, to.delta_plus) >= 0:
-        # The onsets are delta_0 + delta_star (c -+ 1): d = -1 and 1 in d + c d^2 of cover_law.
-        middle = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
-        star = 0.5 * state.mu / state.kappa * L
-        shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
-        write_field(to.delta_minus, middle + star * (shift - 1.0), n, request)
-        write_field(to.delta_plus, middle + star * (shift + 1.0), n, request)
+    write_field(to.delta_0, delta_0, n, request)
+    write_field(to.delta_minus, delta_0 + delta_star * (shift - 1.0), n, request)
+    write_field(to.delta_plus, delta_0 + delta_star * (shift + 1.0), n, request)
     write_field(to.full_slip, 1.0 if abs(D) == np.inf else 0.0, n, request)
     if to.grip >= 0:
         write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
-    if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
+    # ``&`` of rows, here and below, as in law_record.asks_for_moments
+    if (to.lam & to.zeta & to.epsilon & to.beta) >= 0:
         lam, epsilon = lam_and_epsilon(position, u, law)
         # beta is formed with lam of the contact without traction; lam itself is corrected below
         write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
@@ -246,54 +229,18 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon + epsilon_change, n, request)
-    _write_reaction(n, position, u, state, law, law.cover_rows, request)
-    if max(to.M_half_space, to.M_cylinder) >= 0:
+    if _is_cover(law.cover_rows):  # of half-spaces nobody asks for these fields
+        write_field(to.reaction_half_space, scratch[_FACTOR + c], n, request)
+        write_field(to.reaction_cylinder, scratch[_CYLINDER_FACTOR + c], n, request)
+        write_field(to.excess_half_space, scratch[_FACTOR_EXCESS + c], n, request)
+        write_field(to.excess_cylinder, scratch[_CYLINDER_FACTOR_EXCESS + c], n, request)
+    if (to.M_half_space & to.M_cylinder) >= 0:
         _write_body_moments(n, c, law, law.cover_rows, scratch, request)
     of_Q, of_M, of_bodies = asks_for_slopes(to)
     if of_Q or of_M or of_bodies:
         # M of a cover depends on Q, so that its slopes need those of Q.
         slopes_of_Q = of_Q or _is_cover(law.cover_rows)
         _write_slopes(n, c, of_bodies, slopes_of_Q, law, scratch, request)
-
-
-@inline_kernel
-def _write_reaction(n, position, u, state, law, cover_rows, request):
-    """Write how shear acts back on the moments of a state on a cover
-    (:class:`.cover_law.Reaction`), if it is requested.
-
-    n : int, index of the state.
-    position : :class:`.law_functions.RowPosition` of u.
-    u : float, kappa |V|, dimensionless, >= 0.
-    state : :class:`.law_record.State` of numbers, of which kappa and mu are read.
-    law : :class:`.law_record.Law` of the material, of which L is read.
-    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written: nobody asks
-    for it.
-    request : :class:`.law_record.Request` of states and quantities; ``out`` gets the factors of Q
-        (``reaction_half_space``, ``reaction_cylinder``) and of Q |Q|/mu (``excess_...``) that are
-        subtracted from M of a body, dimensionless, of either sign.
-    Returns nothing.
-    """
-    if cover_rows is not None:
-        to = request.to
-        # a row above -1 among the four: one is requested
-        if (
-            max(
-                to.reaction_half_space,
-                to.reaction_cylinder,
-                to.excess_half_space,
-                to.excess_cylinder,
-            )
-            >= 0
-        ):
-            functions = length_and_moment(position, u, law)
-            pairs = pairs_at(position, u, cover_rows)
-            shear = shear_reaction(
-                pairs, state.kappa, state.mu, functions.L, functions.dL, cover_rows
-            )
-            write_field(to.reaction_half_space, shear.half_space, n, request)
-            write_field(to.reaction_cylinder, shear.cylinder, n, request)
-            write_field(to.excess_half_space, shear.half_space_excess, n, request)
-            write_field(to.excess_cylinder, shear.cylinder_excess, n, request)
 
 
 @inline_kernel
@@ -360,9 +307,7 @@ def _write_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     over_delta = 0.0
     over_omega = 0.0
     if slopes_of_Q:
-        over_V, over_delta, over_omega = Q_slopes(
-            u, functions.L, functions.dL, scratch[_D + c], state, law
-        )
+        over_V, over_delta, over_omega = Q_slopes(u, functions, pairs, scratch[_D + c], state, law)
         write_field(to.dQ_dV, over_V, n, request)
         write_field(to.dQ_ddelta, over_delta, n, request)
         write_field(to.dQ_domega, over_omega, n, request)
@@ -406,56 +351,26 @@ def _is_cover(cover_rows):
 
 
 @inline_kernel
-def _write_pairs(c, position, cover_rows, scratch, request):
+def _write_cover(c, position, L, cover_rows, scratch, request):
     """Store in the scratch what the rows of a cover give besides at the speed of a state.
 
     c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
     position : :class:`.law_functions.RowPosition` of u.
+    L : float, 2 kappa delta_star/mu of the state.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
-    half-spaces, of which delta_0 = 0 alone is written.
-    scratch : (SCRATCH_SIZE,) doubles: u of the state is read.  Written are f and g, and where a
-        moment is requested f_c and g_c; :func:`_write_cover` reads them.
+    half-spaces, of which 2 kappa delta_0 = 0 alone is written.
+    scratch : (SCRATCH_SIZE,) doubles: u, kappa and mu of the state are read.  2 kappa delta_0 and
+        the asymmetry c are written, and where a moment is requested the factors and excesses of
+        :class:`.cover_law.Reaction` of both bodies.
     request : :class:`.law_record.Request`, of which ``to`` is read.
     Returns nothing.
     """
     if cover_rows is None:
         scratch[_FREE_CREEP + c] = 0.0
     else:
-        u = scratch[_U + c]
-        # values alone, without derivatives
-        total = total_at(position, u, cover_rows)
-        scratch[_FREE + c] = total.first.value
-        scratch[_EXCESS + c] = total.second.value
-        if asks_for_moments(request.to):
-            cylinder = cylinder_at(total, position, u, cover_rows)
-            scratch[_FREE_CYLINDER + c] = cylinder.first.value
-            scratch[_EXCESS_CYLINDER + c] = cylinder.second.value
-
-
-@inline_kernel
-def _write_cover(c, cover_rows, scratch, request):
-    """Store what the pairs of :func:`_write_pairs` mean: 2 kappa delta_0, the asymmetry, and the
-    factors of Q in M.
-
-    No polynomial is evaluated here, so that a loop over states becomes vector instructions.
-
-    c : unsigned int, column of the state in ``scratch``, 0 to TOGETHER - 1.
-    cover_rows : of any cover among those of the block: it is only asked whether it is None, of
-        half-spaces, and then nothing is written; no number of it is read.
-    scratch : (SCRATCH_SIZE,) doubles: kappa, mu, L, f and g of the state are read, and f_c and g_c
-        where a moment is requested.  2 kappa delta_0 and c are written, and where a moment is
-        requested the factors and excesses of :class:`.cover_law.Reaction` of both bodies.
-    request : :class:`.law_record.Request`, of which ``to`` is read.
-    Returns nothing.
-    """
-    if cover_rows is not None:
-        total = _values(scratch[_FREE + c], scratch[_EXCESS + c])
-        # of an earlier state where no moment is requested: nothing below reads it then
-        cylinder = _values(scratch[_FREE_CYLINDER + c], scratch[_EXCESS_CYLINDER + c])
-        pairs = Pairs(total, cylinder)
+        pairs = pairs_at(position, scratch[_U + c], cover_rows)
         mu = scratch[_MU + c]
-        L = scratch[_L + c]
-        scratch[_FREE_CREEP + c] = total.first.value
+        scratch[_FREE_CREEP + c] = pairs.total.first.value
         # 0 for the derivatives of L, here and below: values alone are read, which do not need them
         scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
         if asks_for_moments(request.to):
@@ -464,12 +379,6 @@ def _write_cover(c, cover_rows, scratch, request):
             scratch[_CYLINDER_FACTOR + c] = reaction.cylinder
             scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
             scratch[_CYLINDER_FACTOR_EXCESS + c] = reaction.cylinder_excess
-
-
-@inline_kernel
-def _values(first, second):
-    """Return two functions of speed without their slopes, as :class:`.cover_law.PairOverSpeed`."""
-    return PairOverSpeed(OverSpeed(first, 0.0, 0.0), OverSpeed(second, 0.0, 0.0))
 
 
 @inline_kernel
@@ -529,7 +438,7 @@ def contact_loop(laws, request, scratch, count):
     to = request.to
     others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)  # whether more than Q and M is asked
     for first in range(0, count, TOGETHER):
-        size = min(TOGETHER, count - first)
+        size = count - first if count - first < TOGETHER else TOGETHER
         for k in range(size):
             c = np.uint64(k)
             state = read_state(request.states, _index(first + k, request))
@@ -542,7 +451,7 @@ def contact_loop(laws, request, scratch, count):
         # are evaluated together.
         together = size if laws[0].selector == 0 else len(laws)
         for begin in range(0, size, together):
-            end = min(begin + together, size)
+            end = begin + together if begin + together < size else size
             for k in range(begin, end):
                 select_material(laws[k % len(laws)], _index(first + k, request))
             _write_positions(_U, _POSITION, begin, end, laws, scratch)
@@ -553,7 +462,7 @@ def contact_loop(laws, request, scratch, count):
                 position = _position(_POSITION, c, scratch)
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
-                _write_pairs(c, position, law.cover_rows, scratch, request)
+                _write_cover(c, position, functions.L, law.cover_rows, scratch, request)
                 # M without traction: m is M/V and the factor V; in the fast limit, where M/V may
                 # underflow, M/(V z) and V z
                 factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
@@ -562,7 +471,6 @@ def contact_loop(laws, request, scratch, count):
             # cover, and all are or none is
             for k in range(begin, end):
                 c = np.uint64(k)
-                _write_cover(c, laws[0].cover_rows, scratch, request)
                 L = scratch[_L + c]
                 D = signed_creep(
                     L,

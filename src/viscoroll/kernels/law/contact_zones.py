@@ -26,26 +26,24 @@ _ROUNDING = 1e-10
 
 
 @kernel(allocates=True)
-def factor(matrix, order):
-    """Replace a square matrix by its factors L and U, with row exchanges; return whether no pivot
-    is 0.
+def solve(matrix):
+    """Solve linear systems by elimination with row exchanges; return whether no pivot is 0.
 
-    matrix : (n, n), overwritten by U on and above the diagonal and L below it; the diagonal of L is
-        1 and not stored.  Where a pivot is 0 or NaN it is left half factorized.
-    order : (n,), int, written: the row, from k on, that was exchanged with row k at step k.
+    matrix : (n, n + m), the square matrix and, behind it, m right sides as columns, which are
+        replaced by the solutions; the rest is overwritten.  Where a pivot is 0 or NaN all numbers
+        are without meaning.
     Returns a bool.
     """
-    n = matrix.shape[0]
+    n, width = matrix.shape
     for k in range(n):
         best = k
         for i in range(k + 1, n):
             if abs(matrix[i, k]) > abs(matrix[best, k]):
                 best = i
-        order[k] = best
         if not abs(matrix[best, k]) > 0.0:  # True for NaN too.
             return False
-        if best != k:  # whole rows, with the part of L that they have
-            for j in range(n):
+        if best != k:
+            for j in range(k, width):
                 kept = matrix[k, j]
                 matrix[k, j] = matrix[best, j]
                 matrix[best, j] = kept
@@ -54,46 +52,21 @@ def factor(matrix, order):
         for i in range(k + 1, n):
             row = matrix[i]
             part = row[k] * scale
-            row[k] = part
             if part != 0.0:
-                for j in range(k + 1, n):
+                for j in range(k + 1, width):
                     row[j] -= part * top[j]
-    return True
-
-
-@kernel(allocates=True)
-def substitute(matrix, order, right):
-    """Solve for many right sides with the factors of :func:`factor`.
-
-    matrix, order : factors and row exchanges, (n, n) and (n,), of a call that returned True.
-    right : (n, m), m right sides as columns, replaced by the solutions.  Returns nothing.
-    """
-    n, m = right.shape
-    # Row exchanges, then L from the first row on, then U from the last row on.
-    for k in range(n):
-        best = order[k]
-        if best != k:
-            for j in range(m):
-                kept = right[k, j]
-                right[k, j] = right[best, j]
-                right[best, j] = kept
-    for i in range(n):
-        row = right[i]
-        for k in range(i):
-            part = matrix[i, k]
-            other = right[k]
-            for j in range(m):
-                row[j] -= part * other[j]
+    # the right sides, from the last row on
     for i in range(n - 1, -1, -1):
-        row = right[i]
+        row = matrix[i]
         for k in range(i + 1, n):
-            part = matrix[i, k]
-            other = right[k]
-            for j in range(m):
+            part = row[k]
+            other = matrix[k]
+            for j in range(n, width):
                 row[j] -= part * other[j]
-        scale = 1.0 / matrix[i, i]
-        for j in range(m):
+        scale = 1.0 / row[i]
+        for j in range(n, width):
             row[j] *= scale
+    return True
 
 
 @kernel(allocates=True)
@@ -104,28 +77,22 @@ def eliminate(contact, coupled):
         read.
     coupled : bool, whether C is not 0; else it is not read.
     Returns (whether the matrix has an inverse, a bool; (N, N): B in its first N - 1 columns, a in
-    the last; the last row belongs to g; zeros without an inverse).  Without ``coupled`` B is 0.
+    the last; the last row belongs to g; numbers without meaning if there is no inverse).  Without
+    ``coupled`` B is 0.
     """
-    at = contact.at
-    N = at.size
+    N = contact.at.size
     # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g: (p, g) is the inverse times
     # x, the column a, less the inverse times C, the columns B, times q.
-    matrix = np.empty((N, N))
+    first = 0 if coupled else N - 1  # without coupling B stays 0: one right side instead of N
+    matrix = np.empty((N, 2 * N - first))
     matrix[:, : N - 1] = contact.H
     matrix[:, N - 1] = -1.0
-    order = np.empty(N, np.int64)
-    good = factor(matrix, order)
-    found = np.zeros((N, N))
-    if not good:
-        return good, found
     if coupled:
-        found[:, : N - 1] = contact.C
-        found[:, N - 1] = at
-        substitute(matrix, order, found)
-    else:  # B stays 0: one right side instead of N
-        one = at.reshape(N, 1).copy()
-        substitute(matrix, order, one)
-        found[:, N - 1] = one[:, 0]
+        matrix[:, N : 2 * N - 1] = contact.C
+    matrix[:, -1] = contact.at
+    good = solve(matrix)
+    found = np.zeros((N, N))
+    found[:, first:] = matrix[:, N:]
     return good, found
 
 
@@ -174,8 +141,7 @@ def solve_zones(S, B, mu, d, contact):
     """
     zone = contact.zone
     n = zone.size
-    matrix = np.empty((n, n))
-    right = np.empty((n, 1))
+    matrix = np.empty((n, n + 1))  # the right side is the last column
     for j in range(n):
         row = matrix[j]
         z = mu * zone[j]
@@ -184,18 +150,16 @@ def solve_zones(S, B, mu, d, contact):
             other = S[j + 1]
             for k in range(n):
                 row[k] = other[k]
-            right[j, 0] = d - other[n]
+            row[n] = d - other[n]
         else:
             other = B[j]
             for k in range(n):
                 row[k] = z * other[k]
             row[j] += 1.0
-            right[j, 0] = z * other[n]
-    order = np.empty(n, np.int64)
-    if not factor(matrix, order):
+            row[n] = z * other[n]
+    if not solve(matrix):
         return False
-    substitute(matrix, order, right)
-    contact.q[:] = right[:, 0]
+    contact.q[:] = matrix[:, n]
     return True
 
 
@@ -211,7 +175,6 @@ def pressure_and_strain(S, B, contact):
     """
     q = contact.q
     n = q.size
-    g = 0.0
     for i in range(n + 1):
         own = B[i]
         row = S[i]
@@ -224,9 +187,7 @@ def pressure_and_strain(S, B, contact):
         contact.strain[i] = slope
         if i < n:  # the last row is that of g
             contact.p[i] = value
-        else:
-            g = value
-    return g
+    return value
 
 
 @kernel(allocates=True)

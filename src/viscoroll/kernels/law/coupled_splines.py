@@ -458,7 +458,7 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
         # Steps 0 and 1 evaluate both onsets, d = -1 and 1; a load beyond them ends the search
         # there.
         for step in range(_HALVINGS + 2):
-            d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
+            d = 2.0 * step - 1.0 if step < 2 else 0.5 * (low + high)
             sigma = 1.0 if d >= 0.0 else -1.0
             cell = cell_at(speed, locate_creep(abs(d), sigma, table), table)
             found = mu[n] * value_at(TRACTION, cell, table)
@@ -466,11 +466,12 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
                 found += value_at(CYLINDER, cell, table) / kappa[n]
             else:
                 found -= value_at(HALF_SPACE, cell, table) / kappa[n]
-            if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
-                break
-            if step > 1 and found < load[n]:  # the load of friction grows with d
+            if step < 2:
+                if d * found <= d * load[n]:
+                    break
+            elif found < load[n]:  # the load of friction grows with d
                 low = d
-            elif step > 1:
+            else:
                 high = d
         middle = edge_at(MIDDLE, u[n], speed, table).value
         onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value

@@ -29,7 +29,6 @@ from .contact_elements import (
     moments,
     node_value,
     product,
-    scale_mesh,
 )
 from .contact_zones import (
     eliminate,
@@ -120,15 +119,17 @@ def new_contact(count):
 
 
 @kernel
-def find_spots(zone, place, spots):
+def find_spots(contact, spots):
     """Write the spots of a mesh, places at which it is refined, at the edges of the zones of a
     contact; return their number, an int.
 
-    zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
+    contact : :class:`Contact`, of which zones and parameters of nodes are read.
     spots : (MOST_SPOTS, 3), parameter, width and weight of each
         (:func:`.contact_elements.make_mesh`), written from the first row on, from the rear edge to
         the front edge; further edges than it has rows are left out.
     """
+    zone = contact.zone
+    place = contact.place
     used = 0
     # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
     for i in range(zone.size - 1):
@@ -156,7 +157,7 @@ def gather(row, contact, c, spots):
         element.
     """
     count = contact.at.size
-    edges = find_spots(contact.zone, contact.place, spots)
+    edges = find_spots(contact, spots)
     used = edges
     # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
     # c pi^2 (1 - t)^2/2 behind the front edge.
@@ -198,7 +199,12 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     count = contact.at.size
     edges = 0  # number of edges at which the mesh is refined; 0 where the mesh is kept
     if again:
-        scale_mesh(c, contact)
+        # to the half length c about the middle of the contact, x = 0; parameters of nodes stay
+        factor = 2.0 * c / (contact.nodes[count] - contact.nodes[0])
+        for n in range(count):
+            contact.nodes[n] *= factor
+            contact.at[n] *= factor
+        contact.nodes[count] *= factor
     else:
         edges = gather(row, contact, c, spots)
     assemble(row.both, contact)
@@ -214,46 +220,10 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     # Edges of the zones of the solution.  With a mesh that is
     # kept (edges = 0) the result is of no use, and find_length does not wait for it.
     found = np.empty((MOST_SPOTS, 3))
-    centred = find_spots(contact.zone, contact.place, found) == edges
+    centred = find_spots(contact, found) == edges
     for k in range(edges):
         centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
     return SOLVED if good else NO_ZONES, g, centred
-
-
-@kernel
-def slip_work(contact, d):
-    """Return the slip loss divided by V: the integral of q (d - u') over the elements that slip.
-
-    contact : solved :class:`Contact`.
-    d : float, kappa times the creepage delta.
-    Returns a float, in the units of the module.
-    """
-    found = 0.0
-    # Element e, ahead of inner node e - 1, has the zone of that node; the rearmost element that of
-    # inner node 0.
-    for e in range(contact.at.size):
-        if contact.zone[max(e - 1, 0)] != 0.0:
-            a = node_value(contact.q, e)
-            b = node_value(contact.q, e + 1)
-            found += (
-                0.5 * (contact.nodes[e + 1] - contact.nodes[e]) * (a + b) * (d - contact.strain[e])
-            )
-    return found
-
-
-@kernel
-def stick_length(contact):
-    """Return the length of the elements that stick, divided by the length of the contact.
-
-    contact : solved :class:`Contact`.
-    Returns a float in [0, 1].
-    """
-    # an element has the zone of the inner node behind it, as in slip_work
-    found = 0.0
-    for e in range(contact.at.size):
-        if contact.zone[max(e - 1, 0)] == 0.0:
-            found += contact.nodes[e + 1] - contact.nodes[e]
-    return found / (contact.nodes[contact.at.size] - contact.nodes[0])
 
 
 @inline_kernel
@@ -263,28 +233,6 @@ def _of_matrix(matrix, e, values):
     for j in range(values.size):
         found += matrix[e, j] * values[j]
     return found
-
-
-@kernel(allocates=True)
-def split_powers(row, contact):
-    """Return (integral of p times the slope of the cylinder, integral of q times its strain).
-
-    They are its moment and the work of its strain, over V (docs/theory_covers.md, Powers).
-
-    row : :class:`Row`, of which the kernels of the cylinder alone are read.
-    contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder: they
-        do not belong to its tractions any more.
-    Both are floats, in the units of the module.
-    """
-    assemble(row.own, contact)
-    N = contact.at.size
-    slope = np.empty(N)
-    strain = np.empty(N)
-    # H p + C q and T q - C p, as in contact_elements, of the part that the cylinder has in both
-    for e in range(N):
-        slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
-        strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
-    return product(contact, contact.p, slope), product(contact, contact.q, strain)
 
 
 @kernel(allocates=True)
@@ -306,19 +254,32 @@ def write_state(contact, c, g, mu, d, status, out):
     out[1] = g / c
     out[2] = traction / (mu * total)
     out[3] = g + moment / total
+    nodes = contact.nodes
+    work = 0.0  # int q (d - u') over the elements that slip, the slip loss divided by V
+    stick = 0.0  # length of the others
+    # Element e, ahead of inner node e - 1, has the zone of that node; the rearmost element that of
+    # inner node 0.
+    for e in range(contact.at.size):
+        length = nodes[e + 1] - nodes[e]
+        if contact.zone[e - 1 if e > 0 else 0] == 0.0:
+            stick += length
+        else:
+            a = node_value(contact.q, e)
+            b = node_value(contact.q, e + 1)
+            work += 0.5 * length * (a + b) * (d - contact.strain[e])
     # In full slip d is not known here: q u' is integrated as it is, by the linear strain.
     if math.isinf(d):
         out[4] = 2.0 * product(contact, contact.q, contact.strain) / total
     else:
         # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
-        out[4] = 2.0 * (d * traction - slip_work(contact, d)) / total
-    out[7] = stick_length(contact)
+        out[4] = 2.0 * (d * traction - work) / total
+    out[7] = stick / (nodes[contact.at.size] - nodes[0])
     # The integral of negative pressure: that of inner node i counts for half of the two elements
     # beside it, which lie between the nodes i and i + 2 of the mesh.
     if status == SOLVED:
         negative = 0.0
         for i in range(contact.p.size):
-            negative -= min(contact.p[i], 0.0) * 0.5 * (contact.nodes[i + 2] - contact.nodes[i])
+            negative -= min(contact.p[i], 0.0) * 0.5 * (nodes[i + 2] - nodes[i])
         if negative > _TENSION * total:
             status = TENSION
     out[8] = status
@@ -381,21 +342,28 @@ def finish_state(row, contact, out):
     row : :class:`Row`, of which ``split`` and ``cylinder`` are read, and where both bodies deform
         the kernels of the cylinder.
     contact : the solved :class:`Contact` of the state; where both bodies deform its matrices are
-        overwritten by those of the cylinder.
+        overwritten by those of the cylinder, which do not belong to its tractions.
     out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written: kappa
         M and 2 kappa times the work of the strain, of the cylinder.
     Returns nothing.
     """
     # kappa M of the cylinder alone, and 2 kappa times the work of its strain, per load; where one
     # body alone deforms they are all of columns 3 and 4, or nothing
-    if row.split:
-        total, _ = moments(contact.nodes, contact.p)
-        moment, work = split_powers(row, contact)
-        out[5] = moment / total
-        out[6] = 2.0 * work / total
-    else:
+    if not row.split:
         out[5] = out[3] if row.cylinder else 0.0
         out[6] = out[4] if row.cylinder else 0.0
+        return
+    assemble(row.own, contact)
+    slope = np.empty(contact.at.size)
+    strain = np.empty(contact.at.size)
+    # H p + C q and T q - C p, as in contact_elements, of the part that the cylinder has in both;
+    # with p and q they give its moment and the work of its strain (docs/theory_covers.md, Powers)
+    for e in range(contact.at.size):
+        slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
+        strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
+    total, _ = moments(contact.nodes, contact.p)
+    out[5] = product(contact, contact.p, slope) / total
+    out[6] = 2.0 * product(contact, contact.q, strain) / total
 
 
 @kernel(allocates=True)
@@ -497,7 +465,7 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
         finish_state(row, contact, out[n])
         guess = length
         this = n % 2
-        found[this] = find_spots(contact.zone, contact.place, edges[this])
+        found[this] = find_spots(contact, edges[this])
         if 0 < n < creeps.size - 1:
             # linear in ``at``: ln of the half length (column 9), and the edges if as many as before
             ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)
@@ -546,29 +514,25 @@ def touch_creep(row, mu, low, high, count, c, slope):
     out = np.zeros(COLUMNS)
     a = low
     b = high
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (a + b)
-        plus, _, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
-        if plus:
-            b = middle
-        else:
-            a = middle
-    opened = 0.5 * (a + b)
-    # Above ``opened`` by a few times the error of the bisection: whether slip of sign - is left.
-    _, minus, edge, c = rear_slip(row, contact, c, slope, mu, b + 2e-3 * (high - low), out)
-    if not minus or edge < 0.0:
-        return opened
-    # Both signs exist, with + at the rear edge: the creepage at which - ends.
-    a = opened
-    b = high
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (a + b)
-        _, minus, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
-        if minus:
-            a = middle
-        else:
-            b = middle
-    return 0.5 * (a + b)
+    # first the creepage at which slip of sign + opens, then, if it is wanted, that at which - ends
+    for ends in range(2):
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (a + b)
+            plus, minus, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
+            above = plus if ends == 0 else not minus
+            if above:
+                b = middle
+            else:
+                a = middle
+        a = 0.5 * (a + b)
+        if ends == 0:
+            # Above by a few times the error of the bisection: whether slip of sign - is left.
+            beyond = b + 2e-3 * (high - low)
+            _, minus, edge, c = rear_slip(row, contact, c, slope, mu, beyond, out)
+            if not minus or edge < 0.0:
+                break
+            b = high  # Both signs exist, with + at the rear edge.
+    return a
 
 
 @kernel(allocates=True)

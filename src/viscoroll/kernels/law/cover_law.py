@@ -102,57 +102,40 @@ class FreeCreep(NamedTuple):
 
 
 @inline_kernel
-def fast_moment(shift, u, cover_rows):
-    """Return M/V divided by z, without the term alpha z W/8 of :func:`.law_functions._fast_terms`,
-    in the fast limit.
+def fast_value(index, x, half_space, cover_rows):
+    """Return a function beyond the last row of the law, where the fast limit holds: lam or eta/F.
 
-    The fast limit holds beyond the last row of the law, and z = lam_fast/(2 u) is the ``scale`` of
-    M/V there.
+    index : int, index in the head of its limit: LAM_LIMIT or ETA_OVER_F_LIMIT.
+    x : float, u of lam, v = 1/F(eta), which may be infinite, of eta/F; dimensionless, > 0; read of
+        a cover alone.
+    half_space : float, the function of a half-space, dimensionless, which is the result if
+        ``cover_rows`` is None; else not read.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces.
+    Returns a float, dimensionless; of a cover the limit and a term in 1/x.
+    """
+    if cover_rows is None:
+        return half_space
+    return _limit_at(index, x, cover_rows).value
 
-    shift : float, this part of a half-space, dimensionless, which is the result if ``cover_rows``
-        is None; else not read.
+
+@inline_kernel
+def fast_quotient(index, u, half_space, cover_rows):
+    """Return a function that vanishes in the fast limit, beyond the last row of the law: epsilon,
+    or M/V divided by z without the term alpha z W/8 of :func:`.law_functions._fast_terms`.
+
+    index : int, index in the head of its product with u: EPSILON_LIMIT or MOMENT_LIMIT.
     u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
+    half_space : float, the function of a half-space, dimensionless, which is the result if
+        ``cover_rows`` is None; else not read.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
         half-spaces.
     Returns a float, dimensionless, which -> 0 for u -> infinity: of a cover as 1/u, of half-spaces
     as (ln u)/u.
     """
     if cover_rows is None:
-        return shift
-    return cover_rows[MOMENT_LIMIT] / u
-
-
-@inline_kernel
-def fast_lengths(lam, shift, u, cover_rows):
-    """Return length and shift of the contact beyond the last row of the law, where the fast limit
-    holds.
-
-    lam, shift : floats, length divided by l0 and shift epsilon of a half-space, dimensionless,
-        which are the result if ``cover_rows`` is None; else not read.
-    u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
-        half-spaces.
-    Returns (lam, epsilon), floats, dimensionless; epsilon is in half contact lengths.
-    """
-    if cover_rows is None:
-        return lam, shift
-    return _limit_at(LAM_LIMIT, u, cover_rows).value, cover_rows[EPSILON_LIMIT] / u
-
-
-@inline_kernel
-def fast_eta_over_F(eta_over_F, v, cover_rows):
-    """Return eta/F beyond the last row of the law, where the fast limit holds.
-
-    eta_over_F : float, eta/F of a half-space, dimensionless, which is the result if ``cover_rows``
-        is None; else not read.
-    v : float, 1/F(eta), dimensionless, > 0, which may be infinite; read of a cover alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
-        half-spaces.
-    Returns a float, dimensionless; of a cover its limit lam/L for v -> infinity and a term in 1/v.
-    """
-    if cover_rows is None:
-        return eta_over_F
-    return _limit_at(ETA_OVER_F_LIMIT, v, cover_rows).value
+        return half_space
+    return cover_rows[index] / u
 
 
 class OverSpeed(NamedTuple):
@@ -283,53 +266,28 @@ def pairs_at(position, u, cover_rows):
         zero = OverSpeed(0.0, 0.0, 0.0)
         none = PairOverSpeed(zero, zero)
         return Pairs(none, none)
-    total = total_at(position, u, cover_rows)
-    return Pairs(total, cylinder_at(total, position, u, cover_rows))
-
-
-@inline_kernel
-def total_at(position, u, cover_rows):
-    """Return f and g of both bodies together, as :class:`PairOverSpeed`.
-
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
-    """
-    # rows have the sum, the head both parts
-    if position.row < 0:
-        free = _limit_at(FREE_HALF_SPACE_LIMIT, u, cover_rows)
-        excess = _limit_at(EXCESS_HALF_SPACE_LIMIT, u, cover_rows)
-        return PairOverSpeed(
-            _weighted_sum(free, 1.0, _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows)),
-            _weighted_sum(excess, 1.0, _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows)),
-        )
-    return _pair_at(TOTAL, position, cover_rows)
-
-
-@inline_kernel
-def cylinder_at(total, position, u, cover_rows):
-    """Return f_c and g_c, the parts of the cylinder in f and g, as :class:`PairOverSpeed`.
-
-    total : :class:`PairOverSpeed` of f and g at the speed, of :func:`total_at`.
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
-    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
-    """
     # 0, 1 or -1; interpolated over the thickness it has rounding, so that it is compared with
     # +-0.5.
     part = cover_rows[CYLINDER_PART]
+    # rows have the sums and the parts of the cylinder, the head the parts of both bodies
+    if position.row < 0:
+        free = _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows)
+        excess = _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows)
+        cylinder = PairOverSpeed(free, excess)
+        total = PairOverSpeed(
+            _weighted_sum(_limit_at(FREE_HALF_SPACE_LIMIT, u, cover_rows), 1.0, free),
+            _weighted_sum(_limit_at(EXCESS_HALF_SPACE_LIMIT, u, cover_rows), 1.0, excess),
+        )
+    else:
+        total = _pair_at(TOTAL, position, cover_rows)
+        cylinder = _pair_at(CYLINDER, position, cover_rows) if part < -0.5 else total
     if part > -0.5:  # One body alone has a layer: all is the cylinder's, or nothing.
         zero = OverSpeed(0.0, 0.0, 0.0)
         weight = 1.0 if part > 0.5 else 0.0
-        return PairOverSpeed(
+        cylinder = PairOverSpeed(
             _weighted_sum(zero, weight, total.first), _weighted_sum(zero, weight, total.second)
         )
-    if position.row < 0:
-        return PairOverSpeed(
-            _limit_at(FREE_CYLINDER_LIMIT, u, cover_rows),
-            _limit_at(EXCESS_CYLINDER_LIMIT, u, cover_rows),
-        )
-    return _pair_at(CYLINDER, position, cover_rows)
+    return Pairs(total, cylinder)
 
 
 @inline_kernel
@@ -516,14 +474,14 @@ def length_change(Q, position, u, cover_rows):
 
 
 @inline_kernel
-def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
+def slopes_of_cover(over_u, over_D, D, functions, pairs, state, cover_rows):
     """Return the slopes of |Q|/mu at fixed creepage less that of free rolling, from those at fixed
     D.
 
     over_u, over_D : floats, slopes over u at fixed D and over D at fixed u, dimensionless.
     D : float, 2 kappa |d| delta_star/mu with the sign of the traction, finite.
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u, L, dL : floats, kappa |V|, 2 kappa delta_star/mu and its slope over u.
+    functions : :class:`.law_functions.LengthAndMoment` at the speed, of which L and dL are read.
+    pairs : :class:`Pairs` at the speed, of which ``total`` is read.
     state : :class:`.law_record.State`, of which mu and the sign of V are read.
     cover_rows : vector of the numbers that only a cover has, as in the module; None, for
         half-spaces, leaves both as they are.
@@ -533,7 +491,9 @@ def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
         return over_u, over_D
     # With D = L |d|, s = sign d and E = 2 kappa |delta - delta_0|/mu = D + s c D^2/L:
     # dE/dD = 1 + 2 c d at fixed u, and at fixed E dD/du = s d^2 (c L' - c' L)/(1 + 2 c d).
-    c = asymmetry_at(pairs_at(position, u, cover_rows), state.mu, L, dL, 0.0, cover_rows)
+    L = functions.L
+    dL = functions.dL
+    c = asymmetry_at(pairs, state.mu, L, dL, 0.0, cover_rows)
     d = (-D if state.V < 0.0 else D) / L
     over_creep = over_D / (1.0 + 2.0 * c.value * d)
     return over_u + np.sign(d) * over_creep * d * d * (c.value * dL - c.slope * L), over_creep

@@ -140,7 +140,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     V = caller_V / scene.V
     omega = caller_omega / scene.omega
     u = scene.kappa * abs(V)
-    if not (u <= MAX_U and abs(V) < np.inf and abs(omega) < np.inf):  # False for NaN too
+    if not (u <= MAX_U and abs(omega) < np.inf):  # False for NaN too
         return refuse(out)
     state = State(kappa=scene.kappa, mu=scene.mu, V=V, creep=omega, creep_is_omega=True)
     position = locate_row(u, law)
@@ -148,7 +148,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     factor = moment_factor(position, u, functions.scale, state)
     pairs = pairs_at(position, u, cover_rows)  # zeros of half-spaces, as what follows from them
     free_creep = pairs.total.first.value
-    c = asymmetry_at(pairs, state.mu, functions.L, functions.dL, functions.ddL, cover_rows).value
+    c = asymmetry_at(pairs, state.mu, functions.L, 0.0, 0.0, cover_rows).value
     D = signed_creep(functions.L, free_creep, c, state, cover_rows)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
@@ -167,7 +167,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     # Slopes in the units of the caller: those of a load over V or omega, times the unit of the load
     # over that of V or omega.  ``out[0]`` is still dimensionless.
     if scene.slopes:
-        out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, D, state, law)
+        out[4], _, out[5] = Q_slopes(u, functions, pairs, D, state, law)
         if cover_rows is not None:
             out[6] += moment_slope_over_V(change.half_space_du, change.half_space_dQ, out[4], state)
             out[7] += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, out[4], state)

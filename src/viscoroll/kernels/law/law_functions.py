@@ -50,7 +50,15 @@ import numpy as np
 from ..numerics.intrinsics import bits_to_float, float_to_bits, unlikely
 from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import evaluate_pair, evaluate_secants, evaluate_single
-from .cover_law import fast_eta_over_F, fast_lengths, fast_moment, pairs_at
+from .cover_law import (
+    EPSILON_LIMIT,
+    ETA_OVER_F_LIMIT,
+    LAM_LIMIT,
+    MOMENT_LIMIT,
+    fast_quotient,
+    fast_value,
+    pairs_at,
+)
 from .law_record import (
     ALPHA,
     BODY_MOMENTS,
@@ -206,7 +214,7 @@ def length_and_moment(position, u, law):
         # L = lam (1 + shift); u d(decrease)/du = -(decrease - 4 part), again by these two slopes
         dL = -(lam / u) * decrease
         ddL = lam / u * (2.0 * decrease - 4.0 * part) / u
-        moment = fast_moment(shift, u, law.cover_rows)
+        moment = fast_quotient(MOMENT_LIMIT, u, shift, law.cover_rows)
         # d(u z m)/du with u z constant: z u dm/du.  m is moment + part with u d(moment)/du =
         # 4 part - moment: of half-spaces moment is shift, of a cover it is in 1/u and part is 0.
         return LengthAndMoment(
@@ -255,7 +263,8 @@ def lam_and_epsilon(position, u, law):
     """
     if in_fast_limit(position):
         _, shift, _ = _fast_terms(u, FAST_TOTAL, law)
-        return fast_lengths(law.rows[LAM_FAST], shift, u, law.cover_rows)
+        lam = fast_value(LAM_LIMIT, u, law.rows[LAM_FAST], law.cover_rows)
+        return lam, fast_quotient(EPSILON_LIMIT, u, shift, law.cover_rows)
     return evaluate_pair(law.rows, ensure_part(LAM_EPSILON, position.row, law), position.t)[:2]
 
 
@@ -364,7 +373,8 @@ def eta_over_F(position, v, law):
     for a cover it is lam/L of the speed at which v = 2 u/L.
     """
     if in_fast_limit(position):
-        return fast_eta_over_F(_half_space_eta_over_F(1.0 / v, law)[0], v, law.cover_rows)
+        half_space, _ = _half_space_eta_over_F(1.0 / v, law)
+        return fast_value(ETA_OVER_F_LIMIT, v, half_space, law.cover_rows)
     return evaluate_single(law.rows, ensure_part(ETA_OVER_F, position.row, law), position.t)[0]
 
 
@@ -395,8 +405,8 @@ def H_over_F2(position, v, law):
 
 @inline_kernel
 def H_over_F2_secants(position, near, v, x, law):
-    """Return H/F^2 and its slope at v, and the mean slopes of both between v/(1 + x) and v, without
-    cancellation.
+    """Return H/F^2 at v, and the mean slopes of it and of its slope between v/(1 + x) and v,
+    without cancellation.
 
     position : :class:`RowPosition` of v.
     near : :class:`RowPosition` of v/(1 + x), in the same row or in the one before; not read where v
@@ -407,16 +417,16 @@ def H_over_F2_secants(position, near, v, x, law):
     law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 or, beyond the
     last row, the head are read.
 
-    Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v,
+    Returns (value, mean slope of the value, mean slope of the slope), floats, all over v,
     dimensionless.  At x = 0, where both ends are v, the mean slopes are the slope and the second
     derivative.  Where the ends are in two rows, a mean slope is the sum of those in either row,
     weighted by their shares of the interval.
     """
     if in_fast_limit(position):
-        return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
+        return H_over_F2(position, v, law)[0], *_fast_secants(v, x, law)
     dt = position.dt_dx
     end = near.t if near.row == position.row else -1.0  # -1: the begin of the row of v
-    value, secant, slope, slope_secant = evaluate_secants(
+    value, secant, _, slope_secant = evaluate_secants(
         law.rows, ensure_part(H_OVER_F2, position.row, law), position.t, end
     )
     # from t to v: a slope has the factor dt/dv, the secant of the slope has it twice
@@ -429,10 +439,11 @@ def H_over_F2_secants(position, near, v, x, law):
         _, near_secant, _, near_slope_secant = evaluate_secants(law.rows, start, 1.0, near.t)
         # Fraction of the interval, of length v x/(1 + x), that lies in the row of v, which begins
         # (t + 1)/dt before v; rounding may leave more than 1.
-        part = min((position.t + 1.0) * (1.0 + x) / (dt * v * x), 1.0)
+        part = (position.t + 1.0) * (1.0 + x) / (dt * v * x)
+        part = 1.0 if part > 1.0 else part
         secant = part * secant + (1.0 - part) * near_secant * near_dt
         slope_secant = part * slope_secant + (1.0 - part) * near_slope_secant * near_dt * near_dt
-    return value, slope * dt, secant, slope_secant
+    return value, secant, slope_secant
 
 
 @kernel

@@ -44,7 +44,7 @@ Fields = namedtuple(
 #: costs little for each, and few enough that their scratch stays in the first cache.
 TOGETHER = 64
 #: Numbers of the scratch of :func:`.contact_kernel.contact_loop`.
-SCRATCH_SIZE = 25 * TOGETHER
+SCRATCH_SIZE = 21 * TOGETHER
 
 
 class State(NamedTuple):
@@ -131,11 +131,15 @@ def write_field(row, value, n, request):
 
 @inline_kernel
 def asks_for_moments(to):
-    """Return whether M, or the moment of a body, is requested, a bool.
+    """Return whether M, the moment of a body, or how shear acts back on one is requested, a bool.
 
     to : :class:`Fields` of a :class:`Request`, -1 where a quantity is not requested.
     """
-    return max(to.M, to.M_half_space, to.M_cylinder) >= 0
+    # All bits of -1 are set: numbers joined by ``&`` are -1 if each of them is -1, else >= 0, as
+    # rows are.
+    reactions = to.reaction_half_space & to.reaction_cylinder
+    excesses = to.excess_half_space & to.excess_cylinder
+    return (to.M & to.M_half_space & to.M_cylinder & reactions & excesses) >= 0
 
 
 @inline_kernel
@@ -144,11 +148,12 @@ def asks_for_slopes(to):
 
     to : :class:`Fields` of a :class:`Request`, -1 where a quantity is not requested.
     """
-    of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega)
-    of_M = max(to.dM_dV, to.dM_ddelta, to.dM_domega)
-    of_half_space = max(to.dM_half_space_dV, to.dM_half_space_domega)
-    of_cylinder = max(to.dM_cylinder_dV, to.dM_cylinder_domega)
-    return of_Q >= 0, of_M >= 0, max(of_half_space, of_cylinder) >= 0
+    # ``&`` as in asks_for_moments
+    of_Q = to.dQ_dV & to.dQ_ddelta & to.dQ_domega
+    of_M = to.dM_dV & to.dM_ddelta & to.dM_domega
+    of_half_space = to.dM_half_space_dV & to.dM_half_space_domega
+    of_cylinder = to.dM_cylinder_dV & to.dM_cylinder_domega
+    return of_Q >= 0, of_M >= 0, (of_half_space & of_cylinder) >= 0
 
 
 @inline_kernel

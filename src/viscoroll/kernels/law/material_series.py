@@ -323,7 +323,7 @@ def solve_modes(jets, series, work):
         for j in range(count):
             store(work.kf, LANES * j, series.Q[j, i] * load(work.k, LANES * j))
         for n in range(0, i + 1, 2):  # two sums that do not wait for one another
-            other = min(n + 1, i)  # the last sum may be formed twice; that is harmless
+            other = n + 1 if n < i else n  # the last sum may be formed twice; that is harmless
             at = LANES * i * count
             first = second = broadcast(0.0)
             for j in range(count):

@@ -267,13 +267,11 @@ class MemoryWeights(NamedTuple):
     """The strengths of the modes at one z, which all points of a contact have in common; filled by
     :func:`unit_shape`.
 
-    weight : a_i X_i of each mode, dimensionless, (modes,).
     complement : 1 - r(a_i z) of each mode, in [0, 1], (modes,).
     z : the z to which they belong, (1,); NaN if they belong to none yet.
-    work : :class:`.material_series.Workspace` of the series, scratch.
+    work : :class:`.material_series.Workspace` of the series, whose ``y`` holds the X_i.
     """
 
-    weight: Any
     complement: Any
     z: Any
     work: Any
@@ -346,7 +344,7 @@ def new_memory_weights(series) -> MemoryWeights:
     initialized.
     """
     n = series.a.size
-    return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))
+    return MemoryWeights(np.empty(n), np.full(1, np.nan), new_workspace(n))
 
 
 @kernel
@@ -378,13 +376,13 @@ def unit_shape(u, w, z, series, weights):
         evaluate_ratios(places, series, weights.work)
         evaluate_functions(False, places, series, weights.work)
         for i in range(series.a.size):
-            weights.weight[i] = series.a[i] * weights.work.y[LANES * i]
             _, weights.complement[i] = ratio_r(series.a[i] * z)
     for i in range(series.a.size):
         a = series.a[i] * z
+        weight = series.a[i] * weights.work.y[LANES * i]  # a_i X_i
         # an infinite a would leave an interval of length 0 and an exponent inf times 0, a NaN
-        if weights.weight[i] > 0.0 and a < np.inf:
-            shape += weights.weight[i] * _memory_integral(u, w, a, weights.complement[i])
+        if weight > 0.0 and a < np.inf:
+            shape += weight * _memory_integral(u, w, a, weights.complement[i])
     return shape
 
 

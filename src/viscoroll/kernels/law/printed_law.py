@@ -45,49 +45,44 @@ _LN2 = 0.69314718055994530942
 _HANKEL_FROM = 25.0
 
 
-def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
+def _hankel(order: int, sign: int) -> list[float]:
     """Return the coefficients of Hankel's expansion of a Bessel function in 1/x.
 
     order : int, 0 or 1, of the Bessel function.
     sign : int, -1 for sqrt(2 pi x) e^-x I(x), 1 for sqrt(2 x/pi) e^x K(x).
-    terms : int, highest power, >= 0.
-    Returns the ``terms`` + 1 coefficients of ascending powers of 1/x, the first 1, a list of
-    floats.
+    Returns the 21 coefficients of ascending powers of 1/x, the first 1, a list of floats.
     """
     a = [1.0]
-    for n in range(1, terms + 1):
+    for n in range(1, 21):
         a.append(sign * a[-1] * (4 * order**2 - (2 * n - 1) ** 2) / (8 * n))
     return a
 
 
-def _temme_k0(terms: int = 10) -> list[list[float]]:
+def _temme_k0() -> list[list[float]]:
     """Return the first coefficients of q^n, q = z^2/4, of the two series of which K0(z) consists.
 
-    terms : number of coefficients of each series.
-    Returns [coefficients of I0, coefficients of K0 + (ln(z/2) + gamma) I0], lists of ``terms``
-    floats, n = 0 first; gamma is Euler's constant.
+    Returns [coefficients of I0, coefficients of K0 + (ln(z/2) + gamma) I0], lists of ten floats, n
+    = 0 first; gamma is Euler's constant.
     """
-    harmonic = [sum(1 / i for i in range(1, n + 1)) for n in range(terms)]
-    plain = [1 / math.factorial(n) ** 2 for n in range(terms)]
-    return [plain, [h * p for h, p in zip(harmonic, plain)]]
+    plain = [1 / math.factorial(n) ** 2 for n in range(10)]
+    return [plain, [sum(1 / i for i in range(1, n + 1)) * p for n, p in enumerate(plain)]]
 
 
-def _temme_k1(terms: int = 10) -> list[list[float]]:
+def _temme_k1() -> list[list[float]]:
     """Return the first coefficients of q^n, q = z^2/4, of the two series of which z K1(z) consists.
 
     z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... +
     1/n.
 
-    terms : number of coefficients of each series.
-    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of
-    ``terms`` floats, n = 0 first; gamma is Euler's constant.
+    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of ten
+    floats, n = 0 first; gamma is Euler's constant.
     """
     # z I1 = sum 2 n q^n/n!^2, by which the logarithm of f_n is multiplied; the rest is 1/n!^2 less
     # 2 n/n!^2 times the harmonic sum, from n = 1 on
-    i0, k0 = _temme_k0(terms)
+    i0, k0 = _temme_k0()
     return [
-        [2 * n * i0[n] for n in range(terms)],
-        [0.0] + [i0[n] - 2 * n * k0[n] for n in range(1, terms)],
+        [2 * n * i0[n] for n in range(10)],
+        [0.0] + [i0[n] - 2 * n * k0[n] for n in range(1, 10)],
     ]
 
 
@@ -210,26 +205,26 @@ def _residual(equation, x, data):
 
 
 @kernel
-def brent(equation, data, low, high, floor):
-    """Find the root x of _residual(equation, x, data) in [low, high] by the method of Brent and
+def brent(equation, data, low, floor):
+    """Find the root x of _residual(equation, x, data) in [low, 1] by the method of Brent and
     Dekker.
 
     equation, data : arguments of :func:`_residual`.
-    low, high : floats, ends of the bracket, low <= high (equal for alpha = 1).
+    low : float, begin of the bracket, at most its end 1 (equal for alpha = 1).
     floor : float, absolute tolerance, >= 0; the root is found to floor + 4e-16 |x|.
     Returns (root, status), a float and an int: OK (0); or NOT_CONVERGED (1), after 60 steps with
     the best value so far (NaN if the residual became NaN on the way), or with NaN for the root
     where the residual is NaN at an end.
 
     At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].  The residual falls
-    from >= 0 at low to <= 0 at high.  An end where it is 0, or where rounding spoils that sign, is
-    itself the root, to rounding: ``high`` with a residual >= 0, else ``low`` with one <= 0, is
+    from >= 0 at low to <= 0 at 1.  An end where it is 0, or where rounding spoils that sign, is
+    itself the root, to rounding: 1 with a residual >= 0, else ``low`` with one <= 0, is
     returned as OK without a step, whatever the other end has.
     """
     a = low
     fa = _residual(equation, low, data)
-    b = high
-    fb = _residual(equation, high, data)
+    b = 1.0
+    fb = _residual(equation, b, data)
     if fb >= 0.0:
         return b, OK
     if fa <= 0.0:
@@ -303,7 +298,7 @@ def direct_contact_length(kappa_V, alpha):
     epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V = 1e-8, alpha =
     11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
     """
-    lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 1.0, 0.0)
+    lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 0.0)
     zeta = lam / (2.0 * kappa_V)
     epsilon = 0.5 * (1.0 / (lam * lam) - 1.0) * ratio_k0k1(zeta)
     return lam, zeta, epsilon, status
@@ -344,7 +339,7 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
     creep = 2.0 * delta_abs * kappa / (mu * lam)
     # 1 + epsilon - beta - creep leaves beta no better than that: asking for more would chase
     # rounding
-    return brent(_EQ_10, (1.0 + epsilon, creep, zeta, alpha), 0.0, 1.0, 0.5 * _EPS)
+    return brent(_EQ_10, (1.0 + epsilon, creep, zeta, alpha), 0.0, 0.5 * _EPS)
 
 
 @kernel
@@ -398,19 +393,21 @@ def direct_moment(kappa, lam, epsilon, zeta, alpha):
 
 
 @kernel
-def direct_state(alpha, n, request):
-    """Evaluate by the equations as printed what is requested of one state; V = 0 is the limit V ->
-    0+ of Sect. 3.4.
+def direct_loop(alpha, request, count):
+    """Evaluate by the equations as printed what is requested of ``count`` states; V = 0 is the
+    limit V -> 0+ of Sect. 3.4.
 
-    alpha : float, T_epsilon/T_sigma of the material, >= 1, dimensionless.
-    n : int, index of the state, >= 0; not checked.
+    alpha : T_epsilon/T_sigma, >= 1, dimensionless, (1,), or (count,) with one for each state.
     request : :class:`.law_record.Request`: states (V finite), and for each quantity its
         row of ``out``, -1 if it is not requested.  Of lam, zeta, epsilon, delta_star, delta,
-        full_slip (1.0 or 0.0), beta, Q and M those that are requested are written into column n +
-        ``first``, dimensionless; other quantities never are.
+        full_slip (1.0 or 0.0), beta, Q and M those that are requested are written for state n into
+        column n + ``first``, dimensionless; other quantities never are.  The states are evaluated
+        in their own order: ``order`` is not read.
+    count : int, number of states; 0 writes nothing.
 
-    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta was not found.  The
-    quantities are written in that case too, and are not to be used.
+    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta of at least one state
+    was not found; all states are evaluated and written in that case too, and the quantities of that
+    state are not to be used.
 
     At V = 0: lam = 1, zeta = inf, epsilon = M = 0, beta = 1 - s and |Q| = mu s (2 - s), with
     s = |delta|/delta_star; delta, if omega is given, is 0 for omega = 0 and else infinite.  In full
@@ -418,57 +415,41 @@ def direct_state(alpha, n, request):
     where that is 0.
     """
     to = request.to
-    state = read_state(request.states, n)
-    kappa = state.kappa
-    mu = state.mu
-    speed = abs(state.V)
-    slip, delta = slip_and_creepage(state)
-    status = stick_status = OK
-    lam = 1.0
-    zeta = np.inf
-    epsilon = M = 0.0
-    if speed > 0.0:
-        lam, zeta, epsilon, status = direct_contact_length(kappa * speed, alpha)
-        M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)
-    delta_star = direct_delta_star(kappa, mu, lam, epsilon)
-    full_slip = abs(delta) >= delta_star
-    # of full slip, also for an infinite delta at V = 0
-    beta = 0.0
-    Q = mu
-    # at V = 0 zeta is infinite, which Eqs. (10) and (15) cannot take: their limit
-    if not full_slip and speed == 0.0:
-        s = abs(delta) / delta_star
-        beta = 1.0 - s
-        Q = mu * s * (2.0 - s)
-    elif not full_slip:
-        beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, alpha)
-        Q = direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
-    write_field(to.lam, lam, n, request)
-    write_field(to.zeta, zeta, n, request)
-    write_field(to.epsilon, epsilon, n, request)
-    write_field(to.delta_star, delta_star, n, request)
-    write_field(to.delta, delta, n, request)
-    write_field(to.full_slip, 1.0 if full_slip else 0.0, n, request)
-    write_field(to.beta, beta, n, request)
-    write_field(to.Q, np.sign(slip) * Q, n, request)
-    write_field(to.M, M, n, request)
-    return max(status, stick_status)
-
-
-@kernel
-def direct_loop(alpha, request, count):
-    """Evaluate what is requested of ``count`` states by the equations as printed.
-
-    alpha : T_epsilon/T_sigma, >= 1, dimensionless, (1,), or (count,) with one for each state.
-    request : :class:`.law_record.Request`, as of :func:`direct_state`; column n +
-        ``first`` of ``out`` is written for state n.  The states are evaluated in their own order:
-        ``order`` is not read.
-    count : int, number of states; 0 writes nothing.
-
-    Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta of at least one state
-    was not found; all states are evaluated and written in that case too.
-    """
-    worst = OK
+    status = stick_status = worst = OK
     for n in range(count):
-        worst = max(worst, direct_state(element(alpha, n), n, request))
+        own_alpha = element(alpha, n)
+        state = read_state(request.states, n)
+        kappa = state.kappa
+        mu = state.mu
+        speed = abs(state.V)
+        slip, delta = slip_and_creepage(state)
+        lam = 1.0
+        zeta = np.inf
+        epsilon = M = 0.0
+        if speed > 0.0:
+            lam, zeta, epsilon, status = direct_contact_length(kappa * speed, own_alpha)
+            M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, own_alpha)
+        delta_star = direct_delta_star(kappa, mu, lam, epsilon)
+        full_slip = abs(delta) >= delta_star
+        # of full slip, also for an infinite delta at V = 0
+        beta = 0.0
+        Q = mu
+        # at V = 0 zeta is infinite, which Eqs. (10) and (15) cannot take: their limit
+        if not full_slip and speed == 0.0:
+            s = abs(delta) / delta_star
+            beta = 1.0 - s
+            Q = mu * s * (2.0 - s)
+        elif not full_slip:
+            beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, own_alpha)
+            Q = direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
+        write_field(to.lam, lam, n, request)
+        write_field(to.zeta, zeta, n, request)
+        write_field(to.epsilon, epsilon, n, request)
+        write_field(to.delta_star, delta_star, n, request)
+        write_field(to.delta, delta, n, request)
+        write_field(to.full_slip, 1.0 if full_slip else 0.0, n, request)
+        write_field(to.beta, beta, n, request)
+        write_field(to.Q, np.sign(slip) * Q, n, request)
+        write_field(to.M, M, n, request)
+        worst |= status | stick_status
     return worst

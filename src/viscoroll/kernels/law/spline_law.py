@@ -42,7 +42,13 @@ from .coupled_splines import (
     value_at,
 )
 from .law_callables import RESULTS, Jitted, pack_records, refuse
-from .law_record import asks_for_slopes, read_state, slip_and_creepage, write_field
+from .law_record import (
+    asks_for_moments,
+    asks_for_slopes,
+    read_state,
+    slip_and_creepage,
+    write_field,
+)
 
 # --- A tensor spline over V, delta and alpha at one point ---
 
@@ -129,22 +135,23 @@ def _locate(spline, name, x):
     and t are 0 and the slope is 1.
     """
     axis = _integer_at(spline, name)
+    first = axis + EDGES
     interval = np.int64(0)
     count = _integer_at(spline, axis + INTERVALS)
     slope = 1.0
-    if count == 0:
-        return AxisPosition(axis, interval, 0.0, slope)
-    if _number_at(spline, axis + IS_LOG) > 0.0:
-        slope = 1.0 / x
-        x = np.log(x)  # NaN of x < 0, which is refused below
-    # Outside of the axis, or NaN.
-    if not _number_at(spline, axis + EDGES) <= x <= _number_at(spline, axis + EDGES + count):
-        return AxisPosition(axis, interval, np.nan, slope)
-    while count > 1:  # bisection; ``count`` intervals are left
-        middle = count >> 1
-        interval += middle * np.int64(x >= _number_at(spline, axis + EDGES + interval + middle))
-        count -= middle
-    return AxisPosition(axis, interval, x - _number_at(spline, axis + EDGES + interval), slope)
+    t = 0.0
+    if count > 0:
+        if _number_at(spline, axis + IS_LOG) > 0.0:
+            slope = 1.0 / x
+            x = np.log(x)  # NaN of x < 0
+        if not _number_at(spline, first) <= x <= _number_at(spline, first + count):
+            x = np.nan
+        while count > 1:  # bisection, which ends in interval 0 for NaN; ``count`` are left
+            middle = count >> 1
+            interval += middle * np.int64(x >= _number_at(spline, first + interval + middle))
+            count -= middle
+        t = x - _number_at(spline, first + interval)
+    return AxisPosition(axis, interval, t, slope)
 
 
 @inline_kernel
@@ -235,15 +242,13 @@ def spline_at(spline, V, delta, alpha):
 TABLE = record_type("function slopes table size", "kappa mu V omega Q M")
 
 
-class Load(NamedTuple):
-    """A load of a state: Q or a rolling moment, dimensionless, with its slopes.
+class LoadSlopes(NamedTuple):
+    """Slopes of a load of a state, Q or a rolling moment, dimensionless.
 
-    value : the load.
     dV : slope over V at fixed creepage.
     ddelta : slope over the creepage at fixed V.
     """
 
-    value: float
     dV: float
     ddelta: float
 
@@ -284,7 +289,7 @@ def _place(V, D, kappa, table):
 
 @inline_kernel
 def _load(name, factor, kappa, at, table):
-    """Return a field times a factor as a :class:`Load`, which is odd in V.
+    """Return the :class:`LoadSlopes` of a field times a factor, a load that is odd in V.
 
     name : int, TRACTION, HALF_SPACE or CYLINDER, of which the table has Q/mu and kappa times the
         moments.
@@ -296,8 +301,7 @@ def _load(name, factor, kappa, at, table):
     found = field_at(name, at.state.w, at.cell, table)
     # With u = kappa |V| and D = 2 kappa delta.  The slope over V has the sign of V twice, as the
     # load is odd and du/dV = kappa sign V: it has none.
-    return Load(
-        at.sign * factor * found.value,
+    return LoadSlopes(
         factor * kappa * (found.du + found.dw * at.state.dw_du),
         at.sign * factor * 2.0 * kappa * found.dw * at.state.dw_dD,
     )
@@ -320,8 +324,8 @@ def _traction(mu, at, table):
 
 @inline_kernel
 def _sloped_loads(mu, kappa, at, table):
-    """Return Q and the moments of half-space and cylinder of one state with their slopes, three
-    :class:`Load`.
+    """Return the slopes of Q and of the moments of half-space and cylinder of one state, three
+    :class:`LoadSlopes`.
 
     mu, kappa : floats, coefficient of friction and slenderness, > 0.
     at : :class:`TablePlace`, the state in the table.
@@ -330,9 +334,8 @@ def _sloped_loads(mu, kappa, at, table):
     full slip; an infinite LIMIT limits nothing.
     """
     Q = _load(TRACTION, mu, kappa, at, table)
-    limited = _traction(mu, at, table)
-    if abs(limited) >= mu * table[LIMIT]:
-        Q = Load(limited, 0.0, 0.0)
+    if abs(_traction(mu, at, table)) >= mu * table[LIMIT]:
+        Q = LoadSlopes(0.0, 0.0)
     half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
     return Q, half_space, _load(CYLINDER, 1.0 / kappa, kappa, at, table)
 
@@ -342,7 +345,7 @@ def _at_fixed_omega(load, V, delta):
     """Return (slope of a load over V at fixed omega, that over omega), floats, dimensionless;
     infinite, or NaN, at V = 0 where it depends on the creepage.
 
-    load : :class:`Load`, slopes over V at fixed creepage and over the creepage.
+    load : :class:`LoadSlopes`, slopes over V at fixed creepage and over the creepage.
     V, delta : floats, speed, of any sign, and creepage, dimensionless.
     """
     if load.ddelta == 0.0:  # Also at V = 0, where the quotients below are NaN.
@@ -400,7 +403,8 @@ def _write_state(table, given, n, request):
     at = _place(given.V, D, kappa, table)
     write_field(to.delta, delta, n, request)
     write_field(to.full_slip, np.float64(at.state.w >= 1.0), n, request)
-    if max(to.lam, to.zeta) >= 0:
+    # ``&`` of rows, here and below, as in law_record.asks_for_moments
+    if (to.lam & to.zeta) >= 0:
         lam = value_at(LENGTH, at.cell, table)
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / at.u, n, request)
@@ -412,18 +416,18 @@ def _write_state(table, given, n, request):
     if to.delta_0 >= 0:
         free = edge_at(FREE, at.u, at.speed, table).value
         write_field(to.delta_0, 0.5 * free / kappa, n, request)
-    if max(to.delta_star, to.delta_minus, to.delta_plus) >= 0:
+    if (to.delta_star & to.delta_minus & to.delta_plus) >= 0:
         low = 0.5 * edge_at(ONSET, at.u, at.speed, table).value / kappa
         high = 0.5 * edge_at(ONSET + 1, at.u, at.speed, table).value / kappa
         write_field(to.delta_minus, low, n, request)
         write_field(to.delta_plus, high, n, request)
         # half the distance of the onsets, which need not be at equal distances from delta_0
         write_field(to.delta_star, 0.5 * (high - low), n, request)
-    if max(to.Q, to.grip) >= 0:
+    if (to.Q & to.grip) >= 0:
         Q = _traction(given.mu, at, table)
         write_field(to.Q, Q, n, request)
         write_field(to.grip, 1.0 - abs(Q) / given.mu, n, request)
-    if max(to.M, to.M_half_space, to.M_cylinder) >= 0:
+    if asks_for_moments(to):
         factor = at.sign / kappa
         half_space = factor * value_at(HALF_SPACE, at.cell, table)
         cylinder = factor * value_at(CYLINDER, at.cell, table)
@@ -451,11 +455,7 @@ def _write_slopes(table, given, at, delta, n, request):
     """
     to = request.to
     Q, half_space, cylinder = _sloped_loads(given.mu, given.kappa, at, table)
-    M = Load(
-        half_space.value + cylinder.value,
-        half_space.dV + cylinder.dV,
-        half_space.ddelta + cylinder.ddelta,
-    )
+    M = LoadSlopes(half_space.dV + cylinder.dV, half_space.ddelta + cylinder.ddelta)
     write_field(to.dQ_ddelta, Q.ddelta, n, request)
     write_field(to.dM_ddelta, M.ddelta, n, request)
     fixed = given.creep_is_omega
@@ -505,35 +505,17 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     out[1] = half_space + cylinder
     out[2] = half_space
     out[3] = cylinder
-    if scene.slopes:
-        _slopes_to_caller(scene, V, delta, at, table, out)
+    if scene.slopes:  # in the units of the caller: times that of the load over that of V or omega
+        Q, of_half_space, of_cylinder = _sloped_loads(scene.mu, kappa, at, table)
+        for load, unit, to_V, to_omega in (
+            (Q, scene.Q, 4, 5),
+            (of_half_space, scene.M, 6, 8),
+            (of_cylinder, scene.M, 7, 9),
+        ):
+            dV, domega = _at_fixed_omega(load, V, delta)
+            out[to_V] = unit / scene.V * dV
+            out[to_omega] = unit / scene.omega * domega
     return 0
-
-
-@inline_kernel
-def _slopes_to_caller(scene, V, delta, at, table, out):
-    """Write the slopes of a state in the units of the caller into ``out``, (RESULTS,).
-
-    scene : TABLE record, of which kappa, mu and the units are read.
-    V, delta : floats, speed, of any sign, and creepage, dimensionless.
-    at : :class:`TablePlace` of the state.
-    table : vector of :mod:`.coupled_splines`.
-    out : vector of RESULTS numbers, of which 4 to 9 are written, in the order of
-        :func:`.law_callables._evaluate`: dQ/dV at fixed omega, dQ/domega at fixed V, then slopes of
-        M_half_space and M_cylinder over V, then over omega.
-    Returns nothing.
-    """
-    # a slope in the units of the caller: times the unit of the load over that of V or omega
-    Q, half_space, cylinder = _sloped_loads(scene.mu, scene.kappa, at, table)
-    dQ_dV, dQ_domega = _at_fixed_omega(Q, V, delta)
-    half_space_dV, half_space_domega = _at_fixed_omega(half_space, V, delta)
-    cylinder_dV, cylinder_domega = _at_fixed_omega(cylinder, V, delta)
-    out[4] = scene.Q / scene.V * dQ_dV
-    out[5] = scene.Q / scene.omega * dQ_domega
-    out[6] = scene.M / scene.V * half_space_dV
-    out[7] = scene.M / scene.V * cylinder_dV
-    out[8] = scene.M / scene.omega * half_space_domega
-    out[9] = scene.M / scene.omega * cylinder_domega
 
 
 def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:

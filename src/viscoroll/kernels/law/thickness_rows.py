@@ -62,7 +62,7 @@ _LAWS = MAKER_MARKS
 
 
 @inline_kernel
-def _interpolate(source, marks, first, to, out, count):
+def _interpolate(source, marks, first, out):
     """Write numbers of the law of the selected cover, interpolated between the laws at the nodes of
     its thickness.
 
@@ -74,10 +74,8 @@ def _interpolate(source, marks, first, to, out, count):
         the laws at the nodes of its octave.
     first : int, index of the first number in each of the laws at the nodes (head, rows, then cover
     rows).
-    to : int, index in ``out`` of the first number that is written.
-    out : vector of rows or cover rows of the law, of which ``count`` numbers are overwritten.
-    count : int, number of numbers.
-    Returns nothing.
+    out : vector of neighbouring numbers of the rows or cover rows of the law, which are
+        overwritten.  Returns nothing.
     """
     # Numbers of the law at one node: head and rows, then the head and the rows of a cover.
     law_size = (
@@ -85,14 +83,14 @@ def _interpolate(source, marks, first, to, out, count):
     )
     # addresses count bytes, 8 for a double
     weights = floats_at(source.weights + 8 * source.law_count * marks[SELECTED], source.law_count)
-    for k in range(count):
-        out[to + k] = 0.0
+    for k in range(out.size):
+        out[k] = 0.0
     # node by node, each in the order of memory
     for j in range(source.law_count):
-        law = floats_at(marks[_LAWS] + 8 * (j * law_size + first), count)
+        law = floats_at(marks[_LAWS] + 8 * (j * law_size + first), out.size)
         weight = weights[j]
-        for k in range(count):
-            out[to + k] += weight * law[k]
+        for k in range(out.size):
+            out[k] += weight * law[k]
 
 
 @kernel(allocates=True)
@@ -120,11 +118,9 @@ def select_cover(n, source):
         marks[ROW_COUNT] = count  # before the interpolation, which reads it
         # the head of the rows, up to what belongs to the makers, and then the cover rows, which
         # follow the head and all rows in the law of a node
-        _interpolate(source, marks, 0, 0, floats_at(source.rows, MAKER_NUMBERS), MAKER_NUMBERS)
-        size = COVER_FRONT_SIZE + COVER_ROW_SIZE * count
-        _interpolate(
-            source, marks, (count + 1) * ROW_SIZE, 0, floats_at(source.cover_rows, size), size
-        )
+        _interpolate(source, marks, 0, floats_at(source.rows, MAKER_NUMBERS))
+        cover_rows = floats_at(source.cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * count)
+        _interpolate(source, marks, (count + 1) * ROW_SIZE, cover_rows)
 
 
 @kernel(allocates=True)
@@ -146,5 +142,5 @@ def make_part(number, source):
     count = (
         2 * PART_SIZE if start % ROW_SIZE < H_OVER_F2 else PART_SIZE
     )  # of a pair of functions, or of one
-    _interpolate(source, marks, start, start, floats_at(source.rows, start + count), count)
+    _interpolate(source, marks, start, floats_at(source.rows + 8 * start, count))
     marks[number] = marks[VERSION]

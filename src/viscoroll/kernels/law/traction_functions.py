@@ -37,7 +37,6 @@ from .law_functions import (
     H_over_F2,
     H_over_F2_secants,
     eta_over_F,
-    free_creep_and_slopes,
     locate_row,
 )
 from .law_record import slip_and_creepage
@@ -61,36 +60,6 @@ def stick_argument(u, L, D):
     neither has a meaning.
     """
     return 2.0 * u / (L - D)
-
-
-@inline_kernel
-def traction_over_mu(position, v, u, L, D, law):
-    """Return |Q|/mu, the fraction of the friction that is used; the fraction keeps its digits at
-    small creepage too.
-
-    position : :class:`.law_functions.RowPosition` of v; like v it is not read in full slip.
-    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
-    u : float, kappa |V|, dimensionless, >= 0; read where the form with the mean slope is used.
-    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
-    D : float, L |d|, dimensionless, >= 0; infinite in full slip.
-    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
-
-    Returns a float in [0, 1], dimensionless: 0.0 at D = 0; 1.0 in full slip, where D is rounded to
-    L or above, and where L or D is NaN.  From D = L/16 on it is 1 - w^2 (H/F^2)(v) with w = L - D,
-    unless that difference is small (:func:`_cancels`); else it is D [(2 L - D) (H/F^2)(v) - v L S]
-    with the mean slope S of H/F^2 between 2 u/L and v.
-    """
-    w = L - D
-    if not w > 0.0:  # also in partial slip so close to its end that D is rounded to L
-        return 1.0
-    if D >= SMALL_CREEP * L:
-        value, _ = H_over_F2(position, v, law)
-        traction = 1.0 - w * w * value
-        if not _cancels(traction, D, L):
-            return min(traction, 1.0)
-    # The other end of the interval is 2 u/L = v/(1 + x), with x = L/w - 1 = D/w.
-    value, _, secant, _ = H_over_F2_secants(position, locate_row(2.0 * u / L, law), v, D / w, law)
-    return D * ((2.0 * L - D) * value - v * L * secant)
 
 
 @inline_kernel
@@ -124,7 +93,8 @@ def friction_reserve(position, v, L, D, law):
     """
     w = L - D
     # 1 at D = 0, where L^2 H/F^2 = 1 but for rounding, which may leave more; 0 for a NaN too
-    return min(w * w * H_over_F2(position, v, law)[0], 1.0) if w > 0.0 else 0.0
+    reserve = w * w * H_over_F2(position, v, law)[0] if w > 0.0 else 0.0
+    return 1.0 if reserve > 1.0 else reserve
 
 
 @inline_kernel
@@ -147,7 +117,8 @@ def stick_fraction(position, v, lam, L, D, law):
         return 0.0
     # beta = eta/zeta with eta = (eta/F)/v, v = 2 u/w and zeta = lam/(2 u): u cancels, so that it
     # holds at u = 0 too.  At D = 0 the whole contact sticks, exactly.
-    return min(eta_over_F(position, v, law) * w / lam, 1.0) if D > 0.0 else 1.0
+    beta = eta_over_F(position, v, law) * w / lam if D > 0.0 else 1.0
+    return 1.0 if beta > 1.0 else beta
 
 
 @inline_kernel
@@ -163,7 +134,7 @@ def traction_slopes(u, L, dL, D, law):
     and where L or D is NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they
     are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
 
-    As in :func:`traction_over_mu`, mean slopes of H/F^2 and of its slope are used where D is below
+    As in :func:`signed_traction`, mean slopes of H/F^2 and of its slope are used where D is below
     L/16 or a difference would lose digits.  With them the slope over u is 0 at D = 0 and at u = 0;
     from D = L/16 on the plain formula holds at u = 0 too, unless a difference would lose digits.
     """
@@ -177,7 +148,7 @@ def traction_slopes(u, L, dL, D, law):
     if D < SMALL_CREEP * L or _cancels(1.0 - w * w * value, D, L):
         x = D / w  # v/v1 - 1
         v1 = 2.0 * u / L
-        _, _, secant, slope_secant = H_over_F2_secants(position, locate_row(v1, law), v, x, law)
+        _, secant, slope_secant = H_over_F2_secants(position, locate_row(v1, law), v, x, law)
         # With f = H/F^2: from L^2 f(2 u/L) = 1 follows dL/du = -f'/A at v1, so that A dL + f' of
         # the plain formula is a difference of values at v and v1, which is formed by mean slopes.
         step = v1 * x  # v - v1
@@ -223,35 +194,55 @@ def signed_creep(L, free_creep, asymmetry, state, cover_rows):
 
 
 @inline_kernel
-def signed_traction(position, v, u, L, D, mu, law):
-    """Return the traction Q, Eq. (15), divided by the load P.
+def signed_traction(position, v, u, L, signed_D, mu, law):
+    """Return the traction Q, Eq. (15), divided by the load P; it keeps its digits at small creepage
+    too.
 
     position : :class:`.law_functions.RowPosition` of v; like v it is not read in full slip.
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
-    u : float, kappa |V|, dimensionless, >= 0.
+    u : float, kappa |V|, dimensionless, >= 0; read where the form with the mean slope is used.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
-    D : float, L |d| with the sign of the traction, of :func:`signed_creep`,
-        dimensionless; inf or -inf in full slip.
+    signed_D : float, L |d| with the sign of the traction, of :func:`signed_creep`, dimensionless;
+        inf or -inf in full slip.
     mu : float, coefficient of friction, dimensionless, > 0.
     law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
+
     Returns a float in [-mu, mu], dimensionless, with the sign of D, which may be that of -0.0; mu
-    or -mu in full slip, and also where D or L is NaN.
+    or -mu in full slip, where |D| is rounded to L or above, and where L or D is NaN.  With D for
+    |D|, from D = L/16 on |Q|/mu is 1 - w^2 (H/F^2)(v) with w = L - D, unless that difference is
+    small (:func:`_cancels`); else it is D [(2 L - D) (H/F^2)(v) - v L S] with the mean slope S of
+    H/F^2 between 2 u/L and v.
     """
-    return np.copysign(mu * traction_over_mu(position, v, u, L, abs(D), law), D)
+    D = abs(signed_D)
+    w = L - D
+    traction = 1.0  # |Q|/mu in full slip, also where w is 0 by rounding
+    if w > 0.0:
+        traction = 0.0  # of small creepage, which counts as cancelled
+        if D >= SMALL_CREEP * L:
+            value, _ = H_over_F2(position, v, law)
+            traction = 1.0 - w * w * value
+            traction = 1.0 if traction > 1.0 else traction
+        if _cancels(traction, D, L):
+            # The other end of the interval is 2 u/L = v/(1 + x), with x = L/w - 1 = D/w.
+            near = locate_row(2.0 * u / L, law)
+            value, secant, _ = H_over_F2_secants(position, near, v, D / w, law)
+            traction = D * ((2.0 * L - D) * value - v * L * secant)
+    return np.copysign(mu * traction, signed_D)
 
 
 @inline_kernel
-def Q_slopes(u, L, dL, D, state, law):
+def Q_slopes(u, functions, pairs, D, state, law):
     """Return the slopes of the traction Q, divided by the load P, over speed, creepage and angular
     velocity.
 
     u : float, kappa |V|, dimensionless, >= 0.
-    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless.
+    functions : :class:`.law_functions.LengthAndMoment` at the speed, of which L and dL are read.
+    pairs : :class:`.cover_law.Pairs` at the speed (:func:`.cover_law.pairs_at`), zeros of
+        half-spaces.
     D : float, L |d| with the sign of the traction, of :func:`signed_creep`,
         dimensionless; inf or -inf in full slip, where nothing else is read.
     state : :class:`.law_record.State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
-    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 and, of a
-    cover, ``cover_rows`` are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
 
     Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta
     or at fixed omega, whichever ``state`` has, the others at fixed V.  All are 0 in full slip,
@@ -259,12 +250,10 @@ def Q_slopes(u, L, dL, D, state, law):
     partial slip at V = 0 the last is infinite, since omega = V (1 + delta) then changes delta
     without bound, and so is the first if omega is given.
     """
-    if abs(D) >= L:
+    if abs(D) >= functions.L:
         return 0.0, 0.0, 0.0
-    over_u, over_D = traction_slopes(u, L, dL, abs(D), law)
-    over_u, over_D = slopes_of_cover(
-        over_u, over_D, D, locate_row(u, law), u, L, dL, state, law.cover_rows
-    )
+    over_u, over_D = traction_slopes(u, functions.L, functions.dL, abs(D), law)
+    over_u, over_D = slopes_of_cover(over_u, over_D, D, functions, pairs, state, law.cover_rows)
     # Q = +-mu |Q|/mu with D = 2 kappa |delta|/mu and u = kappa |V|; delta = omega/V - 1 at fixed V.
     # ``over_delta`` is the slope for V > 0; for V < 0 Q has the sign of -delta, and the slope the
     # opposite sign: dQ/domega = (dQ/ddelta)/V is over_delta/|V| for both.
@@ -274,7 +263,7 @@ def Q_slopes(u, L, dL, D, state, law):
     over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
     # From fixed delta - delta_0 to fixed delta: delta_0 of a cover changes with the speed, by
     # d delta_0/dV = (du/dV)/(2 kappa) d(2 kappa delta_0)/du, with du/dV = kappa for V > 0.
-    over_V -= 0.5 * over_delta * free_creep_and_slopes(u, law).slope
+    over_V -= 0.5 * over_delta * pairs.total.first.slope
     if state.creep_is_omega:  # d delta/dV = -omega/V^2 = -(1 + delta)/V at fixed omega
         over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega

@@ -291,7 +291,7 @@ def make_part(number, source):
         series=series,
         workspace=floats_at(source.workspace, source.workspace_size),
         modes=modes,
-        unlike=source.unlike != 0 and modes > 0,
+        unlike=source.unlike != 0,
         e0=marks[E0],
         version=marks[VERSION],
         lowest=lowest - lowest % LANES,

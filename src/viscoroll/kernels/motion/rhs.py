@@ -301,9 +301,7 @@ def partial_slip_rates(V, d, load, regime, scene):
         # nothing cancels.
         if unlikely(abs(d) < _SMALL_D):
             D = abs(d) * L
-            value, _, secant, _ = H_over_F2_secants(
-                index, locate_row(2.0 * u / L, law), v, D / w, law
-            )
+            value, secant, _ = H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)
         # Of Q = sign mu (1 - w^2 H(2 u/w)) with w = stick L(u) and dw/dd = -sign L.
         dQ_dV = -2.0 * sign * mu * w * (w_slope * stick * dL + slope) * du_dV
