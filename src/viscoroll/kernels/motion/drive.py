@@ -432,7 +432,8 @@ def drive_of_motion(drives, gamma, i, segments):
     Returns the Gains of the motion, those of the last one given if there are fewer; they are not
     converted.
     """
-    source = drives.segments[min(i, drives.segments.shape[0] - 1)]
+    last = drives.segments.shape[0] - 1
+    source = drives.segments[i if i < last else last]
     for k in range(segments.shape[0]):
         copy(source[k], segments[k])
         # x = (tau - start) scale - 1 stays the same number, and so do the coefficients of functions
@@ -442,6 +443,7 @@ def drive_of_motion(drives, gamma, i, segments):
         n_terms = n_coefficients(segments[k])
         for n in range(DRIVE_RATE * n_terms, (DRIVE_RATE + 1) * n_terms):
             segments[k, COL_COEFFICIENTS + n] *= 1.0 / gamma
-    n = min(i, drives.gains.shape[1] - 1)
     gains = drives.gains
+    last = gains.shape[1] - 1
+    n = i if i < last else last
     return Gains(gains[0, n], gains[1, n], gains[2, n], gains[3, n])
