@@ -145,13 +145,26 @@ def table_state(V, d, sigma, kappa, mu, rows, table):
     d: float, second unknown of the module, of either sign; full slip where sigma d >= 1.
     sigma: float, side of D_0, 1.0 or -1.0.
     kappa, mu: floats, slenderness and coefficient of friction, > 0.
-    rows: :class:`Loads` that the rows of the law give, the result without a table; else not read.
+    rows: :class:`Loads` that the rows of the law give, the result without a table.
     table: vector of :mod:`.coupled_splines`, or None.
-    In full slip at V < 0 it is that of the opposite direction, in which slip has the opposite sign:
-    the table is read on the other side, and loads and moments change their signs.
     """
     if table is None:
         return rows
+    return _loads(V, d, sigma, kappa, mu, table)
+
+
+@inline_kernel
+def _loads(V, d, sigma, kappa, mu, table):
+    """Return the :class:`Loads` of a state of a table; full slip where sigma d >= 1.
+
+    V : float, speed of the axis, of either sign.
+    d : float, second unknown of the module, of either sign.
+    sigma : float, side of D_0, 1.0 or -1.0.
+    kappa, mu : floats, slenderness and coefficient of friction, > 0.
+    table : vector of :mod:`.coupled_splines`.
+    In full slip at V < 0 it is that of the opposite direction, in which slip has the opposite sign:
+    the table is read on the other side, and loads and moments change their signs.
+    """
     w = sigma * d
     sign = 1.0  # -1 where the state is read in the opposite direction
     if w >= 1.0 and V < 0.0:
@@ -189,15 +202,26 @@ def pull_of_table(d, kappa, mu, rows, table):
 
     d: float, creepage divided by that of the onset of full slip, in [-1, 1].
     kappa, mu: floats, slenderness and coefficient of friction.
-    rows: the same four numbers by the rows of the law, which are returned if there is no table;
-    else not read.
+    rows: the same four numbers by the rows of the law, which are returned if there is no table.
     table: vector of :mod:`.coupled_splines`, or None.
     Returns four floats, dimensionless: Q - M_half_space, Q + M_cylinder, their derivatives.
     """
     if table is None:
         return rows
+    return _pull(d, kappa, mu, table)
+
+
+@inline_kernel
+def _pull(d, kappa, mu, table):
+    """Return (Q - M_half_space, Q + M_cylinder, their derivatives in d) at V = 0 of a table.
+
+    d: float, at most 1 in modulus.
+    kappa, mu: floats, slenderness and coefficient of friction.
+    table: vector of :mod:`.coupled_splines`.
+    Returns four floats, dimensionless.
+    """
     # sigma is the sign of d; at d = 0 both sides have the same loads, but not the same derivatives
-    found = table_state(0.0, d, np.copysign(1.0, d), kappa, mu, None, table)
+    found = _loads(0.0, d, np.copysign(1.0, d), kappa, mu, table)
     return (
         found.Q - found.half_space,
         found.Q + found.cylinder,
@@ -236,7 +260,7 @@ def slow_law_of_table(sigma, kappa, mu, rows, table):
     """
     if table is None:
         return rows
-    at = table_state(0.0, 0.0, sigma, kappa, mu, None, table)
+    at = _loads(0.0, 0.0, sigma, kappa, mu, table)
     width = width_at(0.0, sigma, mu, Width(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), table)
     # d = (Q - Q_dV V)/Q_dd; 2 kappa delta = D_0 + mu L d, where D_0 is linear in u = kappa V.  So
     # M = M_dV V + M_dd d = (M_dV - Q_dV M_dd/Q_dd) V + (M_dd/Q_dd) Q, and the reaction is minus the
@@ -268,7 +292,7 @@ def sticks_at_rest(kappa, mu, table):
     """
     if table is None:
         return True
-    found = table_state(0.0, 0.0, 1.0, kappa, mu, None, table)
+    found = _loads(0.0, 0.0, 1.0, kappa, mu, table)
     return found.Q == 0.0 and found.half_space + found.cylinder == 0.0
 
 
@@ -294,18 +318,18 @@ def balance_of_table(load, kappa, mu, rows, table):
         # d at which Q - M_half_space, which grows with d, balances the force, by bisection.
         low = -1.0
         high = 1.0
-        d = 0.0
         for _ in range(_HALVINGS):
-            if pull_of_table(d, kappa, mu, None, table)[0] + direction * load.force < 0.0:
+            d = 0.5 * (low + high)
+            if _pull(d, kappa, mu, table)[0] + direction * load.force < 0.0:
                 low = d
             else:
                 high = d
-            d = 0.5 * (low + high)
+        d = 0.5 * (low + high)
         if abs(d) >= 1.0 - _EDGE:  # The bisection ran to an end: no d balances the force.
             # moments may leave a force below mu unbalanced too: below 0 in any case
             return min(mu - abs(load.force), -_EDGE)
         # torque that friction takes at this d in rolling in this direction
-        on_spin = pull_of_table(d, kappa, mu, None, table)[1]
+        on_spin = _pull(d, kappa, mu, table)[1]
         margin = min(margin, on_spin - direction * load.torque)
     if abs(margin) < _ROUNDING * mu:
         margin = 0.0
@@ -328,7 +352,9 @@ def friction_by_shear(V, omega, Q, kappa, mu, rows, table):
     Returns a float.  The slip loss has its own spline: where almost all of the contact sticks, the
     difference of two other splines would have no correct digits.
     """
-    if table is None or table[FIELD_COUNT] <= FRICTION:  # Only graded tables have the slip loss.
+    if table is None:
+        return rows
+    if table[FIELD_COUNT] <= FRICTION:  # Only graded tables have the slip loss.
         return rows
     u = kappa * abs(V)
     slip = omega - V
