@@ -45,9 +45,9 @@ MANY = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
 SOFT = vr.Material(2.3e5, 0.49, SERIES, density=1100.0)
 STEEL = vr.Material.elastic(2e11, 0.3)
 RUBBER_COVER = vr.Material(2.3e5, 0.49, SERIES, thickness=0.02)
-COVERED = vr.Scene(
-    material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0, coupled=False
-)
+#: one for all tests of any cover: its law takes a second, once in a process
+COVER = vr.Cover(vr.Prony([10.0], [1.0 / 11.0]), nu=0.3, thickness=0.5, on="base")
+COVERED = vr.Scene(material=COVER, kappa=10.0, mu=0.5, gamma=1.0, coupled=False)
 THIN = vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5, coupled=False)
 ONE = vr.Scene(11.0, 10.0, 0.5, 120.0)
 PAPER = vr.presets.PAPER_SECTION_5_ROUNDED

@@ -10,6 +10,7 @@ import numba
 import numpy as np
 import pytest
 import scipy
+from calls import COVER
 
 import viscoroll as vr
 from viscoroll.kernels.records import LoadsAndSlopes
@@ -24,7 +25,7 @@ MATERIALS = {
     "like bodies": {"material": vr.Bodies(SERIES, SERIES)},
     "on an elastic base": {"material": vr.Bodies(SERIES, vr.Prony.elastic(), 0.8)},
     "elastic bodies": {"material": vr.Bodies(vr.Prony.elastic(), vr.Prony.elastic(), 0.3)},
-    "a cover": {"material": vr.Cover(SERIES, nu=0.3, thickness=1.0, on="base"), "coupled": False},
+    "a cover": {"material": COVER, "coupled": False},
 }
 #: what the C function writes
 NUMBERS = ctypes.c_double * len(LoadsAndSlopes._fields)

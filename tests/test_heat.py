@@ -181,7 +181,7 @@ def test_two_bodies_with_a_temperature_each():
 
 
 def test_units_are_converted():
-    pint = pytest.importorskip("pint").UnitRegistry()
+    pint = pytest.importorskip("pint").get_application_registry()
     given = {
         "ambient": pint.Quantity(293.15, "kelvin"),
         "conductance": pint.Quantity(6e-3, "kW/m/K"),
@@ -430,16 +430,17 @@ def test_strain_of_the_contact():
             strain.value, part * 0.300283 * at.contact([1.0, 0.0], delta=0.0).length / 0.1, 1e-6
         )
         assert strain.holds.all() == (part < 1.0)
-    thick = dataclasses.replace(rubber, thickness=1.5, prony=vr.Prony.elastic())
+    elastic = dataclasses.replace(rubber, prony=vr.Prony.elastic())
+    thick = dataclasses.replace(elastic, thickness=1.5)
     belt = roller.replace(material=ROLLER.base, base=thick)
     on = roller.replace(material=ROLLER.base, base=rubber)
     assert close(belt.validity(0.0).strain.value, on.validity(0.0).strain.value, tol.THICK_STRAIN)
     assert ROLLER.validity(1.0).strain.holds is None
     # of one rubber, of which one body is a layer and the other one was measured
-    layer = dataclasses.replace(rubber, thickness=0.03, measured=None)
+    layer = dataclasses.replace(elastic, thickness=0.03, measured=None)
     above, below = (
         roller.replace(material=one, base=other).validity(1.0)
-        for one, other in ((layer, rubber), (rubber, layer))
+        for one, other in ((layer, elastic), (elastic, layer))
     )
     assert close(above.strain.value, below.strain.value, 1e-12)
     assert above.strain.holds == below.strain.holds

@@ -27,7 +27,7 @@ from refusals import refused
 import viscoroll as vr
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-Quantity = pint.UnitRegistry().Quantity
+Quantity = pint.get_application_registry().Quantity
 SCENE = vr.Scene(11.0, 10.0, 0.3, 1.0)
 CYLINDER = vr.Cylinder(R=1.0, m=40.0, E=2e6, nu=0.5, T_epsilon=0.5, T_sigma=0.05, mu=0.3)
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0], [0.5]), 0.25)

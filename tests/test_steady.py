@@ -9,6 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import tolerances as tol
+from calls import COVER
 from closeness import close
 from long_cases import long
 from refusals import refused
@@ -259,11 +260,11 @@ def brute_feedback(scene, force, torque, V):
     return found + count(left(middle)[1], within)
 
 
-COVER = series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0, on="base"))
+ON_BELT = series_scene(COVER)
 #: by the fast law, by the table of the coupled solution, and with the cover on the cylinder
 COVERED = (
-    COVER,
-    COVER.replace(coupled=None),
+    ON_BELT,
+    ON_BELT.replace(coupled=None),
     series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0)),
 )
 
@@ -299,7 +300,7 @@ def test_feedback_on_omega_misses_none(scene):
 @pytest.mark.parametrize("coupled", [False, *long(None)])
 def test_gains_on_omega_that_nearly_cancel_are_refused(coupled):
     force, torque = (vr.Feedback(0.01, omega=gain) for gain in (0.1, -0.1))
-    scene = COVER.replace(coupled=coupled)
+    scene = ON_BELT.replace(coupled=coupled)
     refused(lambda: scene.steady(force=force, torque=torque), "nearly cancel")
 
 
@@ -342,7 +343,7 @@ def test_eigenvalues_at_the_least_and_largest_numbers():
     is -T_mean/(1 + j) still.
     """
     scene = series_scene(TWO)
-    for each in (scene, COVER):
+    for each in (scene, ON_BELT):
         known = each.steady(V=1e-8, torque=0.0).eigenvalues[0]
         for V in (1e-18, 1e-153, 1e-290, -1e-308, 5e-324):
             found = each.steady(V=V, torque=0.0)

@@ -203,7 +203,7 @@ def test_depth_is_that_of_the_surface_in_the_middle():
 
 
 def test_a_cylinder_has_the_units_of_its_scene():
-    roller = pair(STEEL, vr.Material(2.3e5, 0.49, ONE, thickness=0.02))
+    roller = pair(STEEL, vr.Material(2.3e5, 0.49, ELASTIC, thickness=0.02))
     found = coupled(roller, 0.5, delta=0.01)
     plain = coupled(roller.scene(), 0.5 / roller.scale["V"], delta=0.01)
     for name in ("Q", "M", "loss_slip"):

@@ -34,7 +34,7 @@ def test_an_ensemble_is_its_motions(name):
     fields = ("V", "omega", "x", "angle", "delta", "slip_loss", "rolling_loss")
     asked = {"rtol": 1e-6, "rest": 1e-3, "fields": fields, "method": "integrate"}
     found = scene_of(many, mu=mu).ensemble(*start, T, **asked, threads=1)
-    for i in range(len(many)):
+    for i in range(1, len(many), 4):  # an elastic one and one of fewer modes among them
         motion = scene_of(many[i], mu=mu[i]).roll(*start[:, i], T, rtol=1e-6, rest=1e-3)
         for field in fields:
             exact = motion[field]

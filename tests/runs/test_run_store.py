@@ -44,6 +44,8 @@ rtol = 1e-6
 rest = 1e-3
 block = 100
 keep = "all"
+fields = ["V"]
+summaries = ["V"]
 """
 
 #: without it one flow map holds for all motions

@@ -25,7 +25,7 @@ V = np.geomspace(1e-2, 2.0, 21)
 DELTA = np.linspace(-0.04, 0.04, 33)
 ALPHA = np.array([1.0, 2.0, 4.0, 8.0, 16.0])
 #: A thin rubber cover on a steel core, on concrete: delta_0 is an eighth of delta_star.
-RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [0.1, 1e-3]), thickness=0.012)
+RUBBER = vr.Material(2e6, 0.5, vr.Prony([6.0], [1e-3]), thickness=0.012)
 CONCRETE = vr.Material.elastic(3e10, 0.2)
 COVERED = vr.Cylinder(R=0.1, m=60.0, material=RUBBER, base=CONCRETE, mu=0.6, coupled=False)
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)

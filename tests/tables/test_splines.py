@@ -137,7 +137,7 @@ def test_a_grid_of_another_program(tmp_path):
     found, truth = (each(speeds, omega, slopes=True) for each in (law, ROLLER.law()))
     labelled = law(*(xr.DataArray(each, dims="run") for each in (speeds, omega)))
     assert labelled.Q.identical(xr.DataArray(found.Q, dims="run", name="Q"))
-    pint = pytest.importorskip("pint").UnitRegistry()
+    pint = pytest.importorskip("pint").get_application_registry()
     with_unit = law(pint.Quantity(3.6 * speeds, "km/h"), pint.Quantity(0.036 * omega, "km/h/cm"))
     assert close(with_unit.M, found.M, tol.SCENE)
     moment = ROLLER.load * ROLLER.R

@@ -98,7 +98,7 @@ def warm_up(arguments: argparse.Namespace) -> None:
     bar = tqdm(calls.items(), leave=False, disable=None)  # drawn on a terminal alone
     for count, (name, call) in enumerate(bar):
         bar.set_description(name)
-        if count % 4 == 3:  # the compiler leaves some 30 MB a call behind; collecting takes 0.7 s
+        if count % 6 == 5:  # the compiler leaves some 30 MB a call behind; collecting takes 0.7 s
             gc.collect()
         call()
     where = f"{len(calls)} kinds of calls are in {cache_folder.cache_root()}"
