@@ -5,8 +5,6 @@ An assumption has ``value``, the number that decides, ``holds``, a bool or boole
 the value, and ``sentence``, which says it in words; the first two are None where no number decides.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -68,7 +66,7 @@ class Assumption(NamedTuple):
         """ "yes" if it holds at every V, "no" if not, "?" where no number can decide."""
         return "?" if self.holds is None else "yes" if np.all(self.holds) else "no"
 
-    def worst_of_parts(self, last: Any) -> Assumption:
+    def worst_of_parts(self, last: Any) -> "Assumption":
         """Return the assumption with one state for each part of a sequence of states, and the same
         sentence.
 

@@ -17,8 +17,6 @@ strain along x:
     body b loses M_b + W_b      friction loses delta Q - W_base - W_cylinder      their sum is M + delta Q
 """  # noqa: E501
 
-from __future__ import annotations
-
 import math
 from functools import cache, lru_cache
 from typing import Any, NamedTuple

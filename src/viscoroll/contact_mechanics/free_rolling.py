@@ -15,8 +15,6 @@ The own time of a material is a unit of time in which its slow time
 (:attr:`viscoroll.Prony.slow_time`) is near 1; u and g are in that unit.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -279,7 +277,7 @@ class FreeRolling:
     units: tuple[str, str, str] = ("", "", "")
 
     @classmethod
-    def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
+    def of_scene(cls, scene: Parameters, V: Any) -> "FreeRolling":
         """Return the states of a scene at given speeds.
 
         scene: dimensionless parameters, numbers or arrays, with one or several materials or alphas,
@@ -318,7 +316,7 @@ class FreeRolling:
         speed = 1.0 / (scene.kappa * unit)
         return cls(materials, index, u, g, speed, time=unit, length=1.0 / scene.kappa)
 
-    def scaled(self, scale: Scale) -> FreeRolling:
+    def scaled(self, scale: Scale) -> "FreeRolling":
         """Return the same states, whose results are in m/s, s and m.
 
         scale: units of the cylinder; with those of a scene, which is dimensionless, this object
@@ -334,7 +332,7 @@ class FreeRolling:
             units=(" m/s", " s", " m"),
         )
 
-    def take(self, index: tuple[Any, ...]) -> FreeRolling:
+    def take(self, index: tuple[Any, ...]) -> "FreeRolling":
         """Return some of the states, as a new object of the same materials and units.
 
         index: index of numpy into u, a tuple of integers or arrays, one for each axis; the other

@@ -2,8 +2,6 @@
 (:func:`sets_of`), the reference temperature, and the factors a_T of the shifts (:class:`Shifts`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -386,7 +384,7 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 
 
 def _shifts_by_overlap(
-    curves: list[_LogCurve], temperatures: list[float]
+    curves: "list[_LogCurve]", temperatures: list[float]
 ) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 

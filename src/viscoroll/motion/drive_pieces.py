@@ -19,8 +19,6 @@ Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined t
 left and one to the right, which meet in it.  A jump is located between two neighbouring doubles.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -276,7 +274,7 @@ def fit_callable(
     rtol: float,
     low: float,
     resolve: float | None,
-) -> Piecewise:
+) -> "Piecewise":
     """Fit a callable by piecewise polynomials, so that the integrator never calls it.
 
     name: name of the argument, for errors.
@@ -451,7 +449,7 @@ class Piecewise(NamedTuple):
     error: float = 0.0
     corners: int = 0
 
-    def take(self, index: Any) -> Piecewise:
+    def take(self, index: Any) -> "Piecewise":
         """Return the function of some of the motions; what is the same for all motions stays.
 
         index: index of numpy, a slice or a vector of integers, that selects the motions.

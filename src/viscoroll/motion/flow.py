@@ -12,8 +12,6 @@ alpha, of a series one near its slow time (``Parameters.in_own_time``).  Speeds 
 and gamma is P T^2/(m R).
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from dataclasses import dataclass, replace
@@ -409,7 +407,7 @@ def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
     V0, omega0 = start
     decay = 1.0 / new_map.slow_rate
 
-    def flow(times: NDArray) -> FlowResult:
+    def flow(times: NDArray) -> "FlowResult":
         """Look the motion up in the new map with gamma = 1.
 
         times : output times, (times,), dimensionless, ascending.
@@ -487,7 +485,7 @@ class FlowResult(NamedTuple):
     switches: Integers
 
     @classmethod
-    def empty(cls, rows: int, count: int, times: int) -> FlowResult:
+    def empty(cls, rows: int, count: int, times: int) -> "FlowResult":
         """Return arrays for motions of which none is computed yet: status -1, 0 switches, all else
         undefined.
 

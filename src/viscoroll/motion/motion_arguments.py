@@ -2,8 +2,6 @@
 gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -234,7 +232,7 @@ class Drive(NamedTuple):
         """Whether anything is given; every call of roll asks, so no dict is made."""
         return {*map(type, self)} != {type(None)}
 
-    def without_zeros(self) -> Drive:
+    def without_zeros(self) -> "Drive":
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times;
         prescribed speeds of 0 stay.
 
