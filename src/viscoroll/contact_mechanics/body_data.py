@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..core import SI, Floats, check_number
-from ..laws.law_table import law_table
+from ..laws import law_table
 from ..materials import Measured, Pair
 from .assumptions import (
     LEAST_KAPPA,

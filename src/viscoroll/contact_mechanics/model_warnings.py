@@ -30,8 +30,8 @@ from .assumptions import (
 )
 from .body_data import BodyData, extent_of, is_outside
 from .free_rolling import FreeRolling, curve_of
+from .model_validity import STEADY_LIMIT
 from .parameters import PARAMETERS, Parameters, Roller
-from .validity import STEADY_LIMIT
 
 #: Creepage from which on a start in full slip has M in doubt, dimensionless: the surface speeds
 #: then differ by V.

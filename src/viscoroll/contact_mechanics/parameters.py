@@ -29,8 +29,7 @@ from ..core import (
     shape_error,
     slope_tan_cos,
 )
-from ..laws import LawGrid, LawTable
-from ..laws.law_table import law_table
+from ..laws import LawGrid, LawTable, law_table
 from ..materials import HIGHEST_ALPHA, Bodies, Cover, Prony
 
 #: Names of the dimensionless numbers of a scene.

@@ -122,8 +122,8 @@ def loads_of(
     slope: ArrayLike | None,
     V: ArrayLike | None,
 ) -> Loads:
-    """Check the loads of a call of :func:`.steady.steady`, and broadcast them with the parameters
-    of the scene.
+    """Check the loads of a call of :func:`.steady_rolling.steady`, and broadcast them with the
+    parameters of the scene.
 
     scene : dimensionless parameters of the roller, on the slope, of which alpha, kappa, mu and j
         are read; one alpha or one material, the others numbers or arrays.

@@ -24,10 +24,10 @@ from ..contact_mechanics import (
     evaluate_law,
     pad,
     resolve_model,
+    steady,
     warn_of_contact,
     zeros_between,
 )
-from ..contact_mechanics.steady import steady
 from ..core import (
     Booleans,
     Dataset,

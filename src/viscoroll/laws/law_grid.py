@@ -36,7 +36,7 @@ from ..core import (
     read_sealed,
 )
 from .law_rows import FIELDS, CoupledRows
-from .law_table import LawTable, coupled_table
+from .law_tables import LawTable, coupled_table
 
 # --- The law of a grid ---
 

@@ -48,7 +48,7 @@ from ..materials import (
 )
 from .law_grid import check_alpha, load_grid
 from .law_rows import CoupledRows
-from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
+from .law_tables import LawAxis, LawTable, coupled_table, law_table, make_table
 from .row_layout import STEADY, CoverRows, steady_table
 
 #: attributes of a cover that its file states besides the series; the last one where the other body
@@ -67,7 +67,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     series, of bodies and of an alpha with T_ref = 1.
     Raises ParameterError for another type, an alpha out of [1, 1e12], a base beside anything but a
     Material, a Material or Pair with a thickness (its law depends on load and radius), many
-    materials, and as :func:`.law_table.law_table`.
+    materials, and as :func:`.law_tables.law_table`.
     """
     if base is not None and not isinstance(material, Material):
         raise described_error("base", "is given", "left out unless material is a Material")

@@ -1,7 +1,7 @@
 """Values of the law by the modes of a material, and rows of polynomials that are fitted to values.
 
 **Rows** are polynomials of one variable over octaves, which :class:`Rows` reads and fits.  The
-variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.law_table`), dimensionless.
+variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.law_tables`), dimensionless.
 
 Slopes are fitted and integrated, and one constant is added: value, slope and secant of a polynomial
 are then all accurate to rounding, where a polynomial fitted to values has lost three digits in its

@@ -19,7 +19,7 @@ from ..core import Floats, Integers, ParameterError
 from ..kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
 from ..materials import Bodies, Cover, Prony, lock_array
 from .cover_rows import cover_rows
-from .law_table import OCTAVES, make_table, tables_of_octave
+from .law_tables import OCTAVES, make_table, tables_of_octave
 from .row_layout import AxisRows, align_vector, allocate_rows, pack_axis, pack_materials
 
 #: laws of an octave of thickness, at Chebyshev nodes; of a rubber with three modes the error then

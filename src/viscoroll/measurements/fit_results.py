@@ -10,8 +10,13 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import MISFIT_LIMIT, Assumption, assess_measured_band, transit_frequency
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import (
+    MISFIT_LIMIT,
+    Assumption,
+    assess_measured_band,
+    contact,
+    transit_frequency,
+)
 from ..core import (
     ArrayLike,
     Booleans,

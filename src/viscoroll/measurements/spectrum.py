@@ -28,8 +28,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..contact_mechanics import transit_speeds
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import contact, transit_speeds
 from ..core import Floats, described_error
 from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Measured, Prony
 from ..rollers import Scene

@@ -27,8 +27,7 @@ from ..kernels.motion import flow_layout
 from ..kernels.numerics.cache_folder import cache_root
 from ..kernels.numerics.jit import sources_digest
 from ..kernels.records import Flow, Motions
-from ..laws import interleave_pairs
-from ..laws.law_table import law_table
+from ..laws import interleave_pairs, law_table
 from ..materials import Prony
 from .flow_tables import NODES, SPEEDS, fill_layers, fill_manifold
 from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integrate_motions

@@ -16,12 +16,12 @@ from ..contact_mechanics import (
     FreeRolling,
     Parameters,
     Roller,
+    contact,
     refuse_beyond,
     refuse_cover,
     resolve_model,
     warn_of_start,
 )
-from ..contact_mechanics.contact import contact
 from ..core import (
     Floats,
     Integers,
@@ -36,7 +36,7 @@ from ..core import (
     make_dimensionless,
     run_blocks,
 )
-from ..laws.law_table import law_table
+from ..laws import law_table
 from .drive_functions import UNDRIVEN, DriveFunctions, KernelDrive, prepare_drive
 from .motion_arguments import (
     LOSSES,

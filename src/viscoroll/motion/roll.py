@@ -10,9 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from ..contact_mechanics import Roller, Validity, assess_heat, scale_of, warn_of_speeds
-from ..contact_mechanics.contact import contact
-from ..contact_mechanics.validity import validity
+from ..contact_mechanics import (
+    Roller,
+    Validity,
+    assess_heat,
+    contact,
+    scale_of,
+    validity,
+    warn_of_speeds,
+)
 from ..core import (
     ArrayLike,
     Dataset,

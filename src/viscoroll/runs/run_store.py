@@ -20,11 +20,14 @@ from typing import Any
 
 import numpy as np
 
-from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import (
+    contact,
+    transit_frequency,
+    warn_of_contact,
+    warn_of_unmeasured_starts,
+)
 from ..core import FileError, Named, NDArray, as_file_error, shape_error, write_bytes
-from ..motion import Ensemble, Summary, merge_summaries, summarise, summary_dataset
-from ..motion.ensemble import ensemble
+from ..motion import Ensemble, Summary, ensemble, merge_summaries, summarise, summary_dataset
 from ..sampling import points
 from .run_records import (
     ADVICE,

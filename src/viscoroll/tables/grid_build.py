@@ -18,8 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .. import __version__
-from ..contact_mechanics import coupled_law
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import contact, coupled_law
 from ..core import (
     PAPER,
     SYMBOLS,

@@ -178,7 +178,7 @@ def measured_errors(
 
     Parameters
     ----------
-    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.law_table.LawAxis`, the law
+    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.law_tables.LawAxis`, the law
         of every alpha.
     count : number of points.  Of every alpha the laws of the random alphas share it, with at least
         one point each.

@@ -8,8 +8,15 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import FASTEST, Roller, Validity, refuse_beyond, scale_of, warn_of_speeds
-from ..contact_mechanics.validity import validity
+from ..contact_mechanics import (
+    FASTEST,
+    Roller,
+    Validity,
+    refuse_beyond,
+    scale_of,
+    validity,
+    warn_of_speeds,
+)
 from ..core import (
     Booleans,
     Dataset,

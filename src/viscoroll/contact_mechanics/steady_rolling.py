@@ -224,9 +224,9 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     loads: the loads with their gains, dimensionless.
     n: index of the load.
     Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is infinite
-    with the sign of omega, as in :func:`.contact.contact` at V = 0, and whose eigenvalues are
-    those of the slowest speed of the nodes; or an empty list: also where the gains on omega add to
-    0, where force + torque are 0 at rest, and of a cover, on which a moment remains.
+    with the sign of omega, as in :func:`.contact_states.contact` at V = 0, and whose eigenvalues
+    are those of the slowest speed of the nodes; or an empty list: also where the gains on omega add
+    to 0, where force + torque are 0 at rest, and of a cover, on which a moment remains.
     """
     gains = loads.gains
     total = loads.force[n] + loads.torque[n]

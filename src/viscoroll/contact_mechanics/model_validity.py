@@ -93,7 +93,7 @@ class Steadiness(Assumption):
         Examples
         --------
         >>> import viscoroll as vr
-        >>> from viscoroll.contact_mechanics.validity import Steadiness
+        >>> from viscoroll.contact_mechanics.model_validity import Steadiness
         >>> states = vr.presets.RUBBER_CYLINDER.validity([1.0, 2.0]).steady.free
         >>> Steadiness.of(states).holds
         array([ True,  True])
@@ -128,7 +128,7 @@ class Steadiness(Assumption):
         Examples
         --------
         >>> import viscoroll as vr
-        >>> from viscoroll.contact_mechanics.validity import Steadiness
+        >>> from viscoroll.contact_mechanics.model_validity import Steadiness
         >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
         >>> states = motion.roller.validity(motion.V).steady.free
         >>> float(Steadiness.along(states, motion.regime > 0, motion.x, ends=True).share)
