@@ -16,7 +16,7 @@ order, gets the same bits, and holds no other block in memory.
 """
 
 import copy
-from functools import lru_cache
+import functools
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -268,7 +268,7 @@ def _mix_bits(x: Words) -> Words:
     return x ^ (x >> np.uint64(31))
 
 
-@lru_cache(maxsize=2)
+@functools.lru_cache(maxsize=2)
 def _sequence(seed: int, dimensions: int) -> Any:
     """Return the scrambled Sobol sequence of scipy.stats.qmc at its start.
 

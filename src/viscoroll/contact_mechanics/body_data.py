@@ -8,8 +8,8 @@ p_0 = E* a/(2 R).  In a layer it follows from the field of the layer under such 
 same load.
 """
 
+import dataclasses
 import math
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -206,7 +206,7 @@ NO_SPEEDS = math.inf, 0.0
 _OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class BodyData:
     """Data of the bodies of one cylinder or of several that share their materials.
 

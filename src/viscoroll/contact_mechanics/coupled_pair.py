@@ -17,8 +17,8 @@ strain along x:
     body b loses M_b + W_b      friction loses delta Q - W_base - W_cylinder      their sum is M + delta Q
 """  # noqa: E501
 
+import functools
 import math
-from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,7 +50,7 @@ _SCALES = np.geomspace(1e-7, 1.0, 200)
 _GROWTH = 0.4
 
 
-@cache
+@functools.cache
 def _fit() -> tuple[Floats, Floats]:
     """Return the nodes of the polynomials of kernels, and the matrix that fits them.
 
@@ -127,7 +127,7 @@ def _half_space(body: Any, u: float, x: Floats) -> Floats:
     return np.array([normal, normal, body.local * coupling])
 
 
-@lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=4)
 def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     """Return what kernels of a bonded layer have in common at all speeds.
 

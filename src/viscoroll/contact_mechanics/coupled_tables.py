@@ -11,11 +11,11 @@ on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load
 it only through that ratio.
 """
 
+import functools
 import hashlib
 import math
 import sys
 import threading
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -353,7 +353,7 @@ def stored_law(scene: Any) -> LawTable:
     return coupled_table(scene.material, rows)
 
 
-@lru_cache(maxsize=32)
+@functools.lru_cache(maxsize=32)
 def _stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
     """Return the table of a pair at one mu, from its file, else solved and stored.
 

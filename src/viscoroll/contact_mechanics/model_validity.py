@@ -8,7 +8,7 @@ bodies would have as half-spaces.
 
 from __future__ import annotations
 
-from dataclasses import replace
+import dataclasses
 from functools import cached_property
 from typing import Any
 
@@ -135,7 +135,7 @@ class Steadiness(Assumption):
         0.0
         """
         # rest after a motion counts as a tiny speed, rest before it stays 0
-        free = replace(
+        free = dataclasses.replace(
             free,
             u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0),
         )

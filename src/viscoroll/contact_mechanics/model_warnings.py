@@ -8,10 +8,10 @@ coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m
 moment over P R.
 """
 
+import dataclasses
+import functools
 from bisect import bisect
 from collections.abc import Collection
-from dataclasses import replace
-from functools import lru_cache
 from operator import attrgetter
 from typing import Any
 
@@ -368,7 +368,7 @@ def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> 
     return list(dict.fromkeys(faults))
 
 
-@lru_cache(maxsize=64)
+@functools.lru_cache(maxsize=64)
 def _slow_starts(
     alpha: float | None, material: Prony | Bodies | None, gamma: float, j: float
 ) -> tuple[list[float], list[bool]]:
@@ -385,6 +385,6 @@ def _slow_starts(
     scene = Parameters(alpha, kappa=1.0, mu=1.0, gamma=gamma, j=j, material=material)
     free = FreeRolling.of_scene(scene, 0.0)
     curve: Any = curve_of(free.materials[0])  # an elastic one, without a curve, is never slow
-    free = replace(free, u=np.exp(curve.ln_u))
+    free = dataclasses.replace(free, u=np.exp(curve.ln_u))
     slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.distance()
     return (free.u * free.speed).tolist(), slow.tolist()

@@ -6,10 +6,10 @@ G on the speed turns M(V) = load into M(V) - G V = load, the same problem with a
 is dimensionless unless units are named; a law is a :class:`LawTable`, the rows of one material.
 """
 
+import functools
+import itertools
 import math
 from collections.abc import Callable
-from functools import lru_cache
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -92,7 +92,7 @@ class Branches(NamedTuple):
         indices = []
         nodes = []
         tolerance = EXTREMUM_RTOL * np.abs(load)
-        for first, last in pairwise([0, *self.extremum.nonzero()[0], self.u.size - 1]):
+        for first, last in itertools.pairwise([0, *self.extremum.nonzero()[0], self.u.size - 1]):
             # searchsorted needs rising values: a falling branch is searched with the other sign
             rising = self.resistance[last] > self.resistance[first]
             sign = 1.0 if rising else -1.0
@@ -163,7 +163,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     return ResistanceExtrema(V, M, is_maximum=np.arange(V.size) % 2 == 0)
 
 
-@lru_cache(maxsize=16)
+@functools.lru_cache(maxsize=16)
 def branches(law: LawTable, gain: float) -> Branches:
     """Return the curve kappa (M - G V) over speed, divided into branches on which it is monotone.
 

@@ -28,8 +28,8 @@ dM_half_space_dV and dM_cylinder_dV; :class:`.steady_states.States` have omega a
 in place of the slopes.
 """
 
+import functools
 import math
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -268,7 +268,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
         return problem.slip(free) - free.slips[which]
 
     nodes = search_nodes(problem.contacts.law)
-    zeros = [find_zeros(partial(beyond, n), nodes) for n in range(3)]
+    zeros = [find_zeros(functools.partial(beyond, n), nodes) for n in range(3)]
     nodes = np.unique(np.concatenate([nodes, *zeros]))
     free = problem.free_rolling(nodes)
     low, _, high = free.slips

@@ -16,8 +16,8 @@ law, dQ_dV at fixed omega, dQ_domega, dM_half_space_dV, dM_cylinder_dV and both 
 omega, or omega, the eigenvalues and the moments without traction.
 """
 
-from enum import IntEnum
-from functools import partial
+import enum
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -49,7 +49,7 @@ _ROWS = (
 )
 
 
-class Field(IntEnum):
+class Field(enum.IntEnum):
     """Index of the row of a quantity in an array of states, (12, n).
 
     From row 6 on the array has the slopes of the law while states are computed, in a frame where V
@@ -326,7 +326,9 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers,
     curve = LoadCurve(found.u, found.resistance, found.extremum, gain)
     u = np.empty(which.size)
     run_blocks(
-        partial(crossing_loop, law.record, curve, signed[which], node, u), which.size, _BLOCK
+        functools.partial(crossing_loop, law.record, curve, signed[which], node, u),
+        which.size,
+        _BLOCK,
     )
     return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 

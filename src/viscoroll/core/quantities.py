@@ -14,9 +14,9 @@ Values without a unit, and the labels of xarray and pandas, stay as they are.
 """
 
 import csv
+import datetime
+import decimal
 import re
-from datetime import timedelta
-from decimal import Decimal
 from functools import lru_cache
 from importlib.resources import files
 from numbers import Real
@@ -467,7 +467,7 @@ def _as_floats(name: str, value: Any) -> Any:
 
 def is_real(value: Any) -> TypeGuard[float]:
     """Whether an object is a real number of Python or another library, and not a truth value."""
-    return isinstance(value, Real | Decimal) and not isinstance(value, bool)
+    return isinstance(value, Real | decimal.Decimal) and not isinstance(value, bool)
 
 
 def _is_quantity(value: Any) -> bool:
@@ -569,7 +569,7 @@ def _to_seconds(name: str, value: Any) -> Any:
     the value is no duration, and for lists and masked arrays of durations.
     Raises ParameterError for a duration in months or years, or without a unit.
     """
-    if isinstance(value, timedelta):  # that of pandas is one too, and has nanoseconds
+    if isinstance(value, datetime.timedelta):  # that of pandas is one too, and has nanoseconds
         value = (
             value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)
         )

@@ -11,9 +11,9 @@ The law of a pair depends on kappa V a_T of one body and on the ratio of both ti
 pair of temperatures has a law of its own, of which the rows are made where they are read.
 """
 
+import functools
 import warnings
 from collections.abc import Callable
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -165,7 +165,7 @@ def zeros_of(
 
     parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
     for first in range(0, ambient.size, _BLOCK):
-        balance = partial(rest, first)
+        balance = functools.partial(rest, first)
         around = ambient[first : first + _BLOCK]
         # a margin of 1 K, so that a zero at either end lies between nodes
         nodes = curve.nodes(around.min() - 1.0, hottest[first : first + _BLOCK].max() + 1.0)

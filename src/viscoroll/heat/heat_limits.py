@@ -6,9 +6,9 @@ At a given temperature the speed of a balance is unique, since V M(V) does not f
 are the extrema of that speed over the temperature.  :func:`warming` integrates the balance of heat.
 """
 
+import itertools
 import math
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -541,7 +541,7 @@ def warming(
     y = np.concatenate([theta, np.zeros(2 * theta.size)])
     parts = [y[:, None]] if times[0] == 0.0 else []
     last = times[-1]
-    for span in pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
+    for span in itertools.pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
         own = times[(times > span[0]) & (times <= span[1])]
         # the end of the span too, where the next one starts; it is no output unless it is in
         # ``own``

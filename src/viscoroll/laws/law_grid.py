@@ -8,12 +8,12 @@ Tensor splines by scipy are packed into the form that compiled code reads (:func
 ``kernels.splines``).
 """
 
+import contextlib
+import dataclasses
 import io
 import math
+import os
 from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -61,7 +61,7 @@ _HIGHEST = {"beta": 1.0, "lam": np.inf, "delta_star": np.inf}
 _MOST_BYTES = 1 << 31
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class LawGrid:
     """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes it a
     function of V and omega.
@@ -113,7 +113,7 @@ class LawGrid:
         # u = kappa |V| with V over R/s, from V in m/s
         u = kappa / self.R * self.rows.u
         edges = kappa * self.rows.edges
-        rows = replace(
+        rows = dataclasses.replace(
             self.rows, mu=self.rows.mu / self.load, u=u, edges=edges, fields=fields, fastest=u[-1]
         )
         # the material is not known: alpha = 1 stands for it
@@ -174,7 +174,7 @@ def check_alpha(alpha: Any, ends: Any, source: Any) -> float:
     raise ParameterError("alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {source}")
 
 
-def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
+def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGrid | None:
     """Read the law of a grid from a netCDF file of any program.
 
     Parameters
@@ -247,7 +247,7 @@ def _no_law(path: Any, reason: Any) -> FileError:
     return FileError(path, f"is not a grid of a law, since {reason}")
 
 
-@contextmanager
+@contextlib.contextmanager
 def _told_of(path: Any) -> Iterator[None]:
     """Raise KeyError, ValueError and TypeError of the body of the ``with`` as FileError; a context
     manager.

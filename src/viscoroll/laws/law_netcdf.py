@@ -2,13 +2,13 @@
 bit.
 """
 
+import contextlib
 import json
+import os
 import tomllib
+import types
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import replace
-from os import PathLike
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -117,7 +117,7 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> Data
         coefficients = np.concatenate([law.steady_coefficients[..., STEADY], creep], axis=-1)
         own = {"coefficients": coefficients, "limits": cover.limits}
     # make_dataset reads the numbers of a kind of file as attributes of one object
-    numbers = SimpleNamespace(**(vars(law) | own))
+    numbers = types.SimpleNamespace(**(vars(law) | own))
     return make_dataset(numbers, kind, title, errors, material="\n".join(texts))
 
 
@@ -133,7 +133,7 @@ def _title(table: LawTable) -> str:
     )
 
 
-def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
+def load_law(path: str | os.PathLike[str], alpha: float | None = None) -> Any:
     """Load the law of one material or pair from a file, for use wherever a Prony or Bodies is used.
 
     Parameters
@@ -264,7 +264,7 @@ def _coefficients(content: Content) -> Floats:
     return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(float))
 
 
-@contextmanager
+@contextlib.contextmanager
 def _refuse_incomplete(path: Any) -> Iterator[None]:
     """Raise FileError in place of the errors that parsing an incomplete file ends with; a context
     manager.

@@ -8,10 +8,10 @@ multiplies all moduli in the same way.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -238,7 +238,7 @@ class ShiftFactors:
             return self.a_T[0]
         return math.exp(self._ln(found))
 
-    @cached_property
+    @functools.cached_property
     def _ln(self) -> Any:
         """The interpolated ln a_T, a function of the temperature."""
         from scipy.interpolate import PchipInterpolator

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -159,7 +159,7 @@ class SeriesFit(Result):
         """
         return has_plateau(self.data, self.E)
 
-    @cached_property
+    @functools.cached_property
     def admissible(self) -> Any:
         """Spectra that meet the data as well as this fit, with the smallest and the largest M at
         each speed.

@@ -5,9 +5,9 @@ and [[data]].
 """
 
 import dataclasses
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from operator import attrgetter
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -373,7 +373,7 @@ class _Section(msgspec.Struct):
     units: dict[str, str] = {}
 
 
-def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
+def read_measurements(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read the arguments of :func:`identify` from a TOML file and the files of data that it names.
 
     Parameters

@@ -21,9 +21,9 @@ Speeds, moments and kappa are those of a :class:`viscoroll.Scene`: V in units of
 by P R.
 """
 
+import itertools
 import math
 from collections.abc import Callable
-from itertools import product
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -337,7 +337,7 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, E
     """
     starts = []
     low, high = data.band
-    for margin, density in product(MARGINS, DENSITIES):
+    for margin, density in itertools.product(MARGINS, DENSITIES):
         # - 0.1: the least margin is the last one tried
         for slow in np.arange(margin, _LEAST_MARGIN - 0.1, -0.25):
             ends = max(10.0**-margin / high, data.shortest), 10.0**slow / low

@@ -2,11 +2,11 @@
 or texts, and a heading of a column as its name, its unit and the base of its logarithms.
 """
 
+import collections
 import csv
 import math
 import re
 import tomllib
-from collections import Counter
 from contextlib import suppress
 from decimal import Decimal
 from importlib.resources import files
@@ -265,7 +265,7 @@ def separator_of(text: list[str], decimal: str | None) -> str:
     """
     # separator -> number of cells of a row -> how many rows have as many
     widths = {
-        separator: Counter(
+        separator: collections.Counter(
             len(line.cells)
             for line in cut_lines(text[:2000], separator)
             if line.numeric and len(line.cells) > 1

@@ -5,7 +5,7 @@ T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref
 material.
 """
 
-from dataclasses import dataclass, replace
+import dataclasses
 from functools import cached_property
 from typing import Any
 
@@ -67,7 +67,7 @@ _ROUNDING_OF_JUMP = 1e-12
 _INSTANT = 1e-280
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class DriveFunctions:
     """The functions of time that drive motions, dimensionless, each the same for all motions or one
     for each.
@@ -174,7 +174,7 @@ class DriveFunctions:
         """
         some = self
         if self.counts[0] > 1:
-            some = replace(
+            some = dataclasses.replace(
                 self, functions={name: f.take(index) for name, f in self.functions.items()}
             )
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains

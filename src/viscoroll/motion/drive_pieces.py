@@ -19,9 +19,9 @@ Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined t
 left and one to the right, which meet in it.  A jump is located between two neighbouring doubles.
 """
 
+import dataclasses
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -103,7 +103,7 @@ class Piece(NamedTuple):
         )
 
 
-@dataclass
+@dataclasses.dataclass
 class _Sampled:
     """A callable with its samples, evenly spread over the whole time; dimensionless, times in
     T_ref.

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -68,7 +68,7 @@ class Fastest(NamedTuple):
     omega: Floats
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Ensemble(RollResult):
     """Motions 0 ... n - 1 at common output times, in the units of the roller, as for a
     :class:`Motion`.

@@ -12,10 +12,10 @@ alpha, of a series one near its slow time (``Parameters.in_own_time``).  Speeds 
 and gamma is P T^2/(m R).
 """
 
+import functools
 import hashlib
 import math
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -85,7 +85,7 @@ def folder() -> Path:
     return cache_root() / f"flow-{_digest()}"
 
 
-@cache
+@functools.cache
 def _digest() -> str:
     """Return a digest of all sources on which the bits of a map depend: kernels, materials and
     motions.
@@ -230,7 +230,7 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
     return _map(*map_key(scene, speed), threads)
 
 
-@lru_cache(_MAPS_IN_MEMORY)
+@functools.lru_cache(_MAPS_IN_MEMORY)
 def _map(parameters: MapParameters, octave: int, threads: int | None) -> FlowMap:
     """Return a flow map from memory, from disk, or built and written to disk; the last four stay in
     memory.
@@ -534,7 +534,7 @@ def look_up_ensemble(
         slow_rate=chosen.slow_rate,
     )
     run_blocks(
-        partial(look_up_motions, flow, motions, result),
+        functools.partial(look_up_motions, flow, motions, result),
         count,
         _BLOCK,
         threads=threads,

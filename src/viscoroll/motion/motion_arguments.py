@@ -2,7 +2,7 @@
 gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 """
 
-from functools import partial
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -156,7 +156,7 @@ def dimensionless_error(
     told = (f"{digits_beside(x, *values)} {unit}".rstrip() for x in values)
     sentence = text.replace(":", of_many, 1).format(*told)
     error = ParameterError(name, values[0], sentence.partition(": must be ")[2], sentence)
-    error.dimensionless = partial(
+    error.dimensionless = functools.partial(
         dimensionless_error, name, text, quantity, *numbers, motion=motion
     )
     return error

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -50,7 +50,7 @@ _MORE_STEPS = 1000
 REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Motion(RollResult):
     """One motion, in the units of its roller: dimensionless for a scene, for a cylinder SI units
     per m of length.

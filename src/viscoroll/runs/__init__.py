@@ -12,6 +12,7 @@ store.  :func:`estimate` states the time, memory and disk space that a run takes
 of it.
 """
 
+import dataclasses
 import logging
 import re
 import sys
@@ -26,7 +27,6 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
@@ -340,7 +340,7 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Estimate:
     """Time, memory and disk space that a run takes.
 

@@ -7,9 +7,9 @@ row that is drawn.  :class:`Inputs` gives the values of all inputs at such point
 of the run file with these values.
 """
 
+import contextlib
 import math
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -240,7 +240,10 @@ class Inputs:
         """
         content = _fill_in(self.content, values)
         if self.rolls:
-            with suppress(TypeError, KeyError, AttributeError), np.errstate(all="ignore"):
+            with (
+                contextlib.suppress(TypeError, KeyError, AttributeError),
+                np.errstate(all="ignore"),
+            ):
                 R = content["cylinder"]["R"] if "cylinder" in content else 1.0
                 omega0 = np.divide(content["start"]["V0"], R)
                 content["start"]["omega0"] = omega0 if omega0.ndim else omega0.item()

@@ -1,9 +1,9 @@
 """Export of laws and grids: netCDF, C, JSON, CSV, Modelica, MATLAB."""
 
 import json
+import os
 import re
 from importlib.resources import files
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ _TAKEN = (
 _ERROR = "linear_error"
 
 
-def export(table: Dataset, path: str | PathLike[str]) -> None:
+def export(table: Dataset, path: str | os.PathLike[str]) -> None:
     """Write a law or a grid for another program, whole or not at all.
 
     Parameters
