@@ -140,7 +140,7 @@ def _layer_shear(nu: float) -> Floats:
     nu: Poisson's ratio of the layer.
     Returns a vector, one number for each ratio, dimensionless.
     """
-    from scipy.special import j1
+    from scipy import special
 
     found = np.empty(_THETA.size)
     for n, a in enumerate(_THETA.tolist()):  # of the thickness 1
@@ -158,7 +158,7 @@ def _layer_shear(nu: float) -> Floats:
         # a half-space to rounding, where k > s
         difference = np.where(k > s, 2.0 * k * z * np.exp(-k * z), f + bend)
         # dk = k d ln k, in equal steps of ln k, cancels 1/k of the pressure
-        shear = 0.5 * difference @ j1(k * a) * np.log(k[1] / k[0])
+        shear = 0.5 * difference @ special.j1(k * a) * np.log(k[1] / k[0])
         found[n] = np.abs(shear).max()
     return found
 

@@ -22,8 +22,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import exp1, expi
+from scipy import optimize, special
 
 from ..core import ConvergenceError, Floats, ParameterError, described_error
 from ..kernels.law import coupled_states
@@ -88,7 +87,7 @@ def _memory(X: Floats) -> Floats:
     found[near] = np.exp(x) * entire - np.expm1(x) * found[near]
     middle = ~(near | far)
     x = X[middle]
-    integral = np.where(x > 0.0, exp1(np.abs(x)), -expi(np.abs(x)))
+    integral = np.where(x > 0.0, special.exp1(np.abs(x)), -special.expi(np.abs(x)))
     found[middle] += np.exp(x) * integral
     inverse = 1.0 / X[far]
     # f ~ sum (-1)^k k!/X^(k+1)
@@ -520,7 +519,7 @@ class CoupledRow:
 
         It is found between the onsets by Brent's method, to an error of :data:`_FREE_CREEP_ERROR`.
         """
-        return brentq(
+        return optimize.brentq(
             lambda creep: self.states([creep]).Q_over_mu[0], *self.onsets(), xtol=_FREE_CREEP_ERROR
         )
 

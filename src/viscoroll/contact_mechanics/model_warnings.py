@@ -8,11 +8,11 @@ coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m
 moment over P R.
 """
 
+import bisect
 import dataclasses
 import functools
-from bisect import bisect
+import operator
 from collections.abc import Collection
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -74,7 +74,7 @@ _EXAMINED = 256
 #: Data of materials for which this process has warned already.
 _warned_records: set[Measured] = set()
 #: Takes the numbers of a scene.
-_numbers_of = attrgetter(*PARAMETERS)
+_numbers_of = operator.attrgetter(*PARAMETERS)
 
 
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
@@ -329,7 +329,7 @@ def _is_too_slow(material: Any, alpha: float, u: float, gamma: float, j: float) 
         return True
     lower_ends, slow = _slow_starts(alpha if material is None else None, material, gamma, j)
     # the entry at or below u; below the table the first one
-    return slow[max(bisect(lower_ends, u) - 1, 0)]
+    return slow[max(bisect.bisect(lower_ends, u) - 1, 0)]
 
 
 def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> list[str]:

@@ -280,12 +280,12 @@ def zeros_between(
     Returns (index of the function; zero, by function and ascending, to the rounding of x; whether
     the function falls there), (zeros,) each.
     """
-    from scipy.optimize.elementwise import find_minimum, find_root
+    from scipy.optimize import elementwise
 
     n, k = _extrema(y)
     if n.size:
         sign = np.sign(y[n, k])
-        found = find_minimum(
+        found = elementwise.find_minimum(
             lambda x, n, sign: sign * function(x, n),
             (x[n, k - 1], x[n, k], x[n, k + 1]),
             args=(n, sign),
@@ -297,7 +297,9 @@ def zeros_between(
         y[n, k] = (sign * found.f_x)[other]
     positive = y > 0.0
     n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
-    found = find_root(function, (x[n, k], x[n, k + 1]), args=(n,), tolerances=_ZERO_TOLERANCE)
+    found = elementwise.find_root(
+        function, (x[n, k], x[n, k + 1]), args=(n,), tolerances=_ZERO_TOLERANCE
+    )
     # a node whose value is rounding may have the other sign here: the zero is at that node
     return n, np.where(found.success, found.x, found.bracket[0]), positive[n, k]
 

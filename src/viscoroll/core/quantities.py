@@ -18,7 +18,7 @@ import datetime
 import decimal
 import re
 from functools import lru_cache
-from importlib.resources import files
+from importlib import resources
 from numbers import Real
 from typing import Any, NamedTuple, Protocol, TypeGuard
 
@@ -31,7 +31,7 @@ from .errors import ParameterError, describe_value, described_error, unit_error
 
 def _rows(table: str) -> list[list[str]]:
     """Return the rows of a ``table``, a CSV file beside this module, without its head."""
-    with (files(__package__) / table).open(encoding="utf-8") as file:
+    with (resources.files(__package__) / table).open(encoding="utf-8") as file:
         return [*csv.reader(file)][1:]
 
 

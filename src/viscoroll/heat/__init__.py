@@ -517,7 +517,7 @@ def pair_temperatures(
     Zeros are sought from the cells of a grid of 41 by 41 temperatures in which both balances change
     their sign; the balances hold to 1e-9 (``tests/test_heat.py``).
     """
-    from scipy.optimize import root
+    from scipy import optimize
 
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
@@ -579,7 +579,7 @@ def pair_temperatures(
     cells = (corners.any(axis=(3, 4)) & ~corners.all(axis=(3, 4))).all(axis=0)
     found: list[Any] = []
     for start in 0.5 * (grid[:, :-1, :-1] + grid[:, 1:, 1:])[:, cells].T:
-        at = root(lambda theta: rest(theta[:, None])[:, 0], start, jac=slopes, tol=1e-14).x
+        at = optimize.root(lambda theta: rest(theta[:, None])[:, 0], start, jac=slopes, tol=1e-14).x
         good = np.abs(rest(at[:, None])).max() <= _RESIDUAL * np.abs(at - around).max()
         if good and all(np.abs(at - other).max() > _SAME for other in found):
             found.append(at)

@@ -498,11 +498,11 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> tuple[Floa
     1, 2); its mean, mirrored about the middle of the contact, with the pressure as weight, (2,)),
     with the base first; 0 of a body of nu = 1/2 and of a rigid one.
     """
-    from scipy.fft import dct, dst
+    from scipy import fft
 
     p = np.zeros(_INTERVALS + 1)
     # with x = cos t the pressure is sum q_m sin(m t); the sine transform has a factor 2
-    p[1:-1] = 0.5 * dst(_pressure_terms(modes, z, state, _INTERVALS - 1), type=1)
+    p[1:-1] = 0.5 * fft.dst(_pressure_terms(modes, z, state, _INTERVALS - 1), type=1)
     t = np.arange(_INTERVALS + 1) * (math.pi / _INTERVALS)
     x = np.cos(t)
     # dx = sin t dt; p in reverse order is the pressure mirrored about the middle
@@ -526,7 +526,7 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> tuple[Floa
         values[n] = body.local * (body.instant * modes.alpha * p + strengths @ _memory(p, x, a * z))
     # Chebyshev coefficients of values at these points; the last one, also twice its value, is not
     # used
-    terms = dct(values, type=1, axis=1).T / _INTERVALS
+    terms = fft.dct(values, type=1, axis=1).T / _INTERVALS
     terms[0] *= 0.5
     return terms, mirrored
 

@@ -472,10 +472,12 @@ def _law_of(table: Dataset) -> LawGrid:
     # 2 kappa times creepages, with kappa = 1
     edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
     if slips:  # then Q has a zero, the creepage of free rolling; else it is not used
-        from scipy.interpolate import CubicSpline
+        from scipy import interpolate
 
         # a row at a time: scipy leaves out a zero that the row before has too
-        zeros = [CubicSpline(delta, row).roots(extrapolate=False) for row in fields[..., 0]]
+        zeros = [
+            interpolate.CubicSpline(delta, row).roots(extrapolate=False) for row in fields[..., 0]
+        ]
         edges[:, 3] = [2.0 * zero[zero.size // 2] for zero in zeros]
     # the ends exactly, which rounding would miss
     t = (delta - middle) / half
@@ -517,7 +519,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     splines with four Taylor coefficients each about its left end, of which those from ``degree`` +
     1 on are 0.
     """
-    from scipy.interpolate import BSpline
+    from scipy import interpolate
 
     from ..kernels.law.spline_law import TERMS
 
@@ -525,7 +527,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     of = np.arange(edges.size - 1)[:, None]
     own = np.arange(degree + 1)
     basis = np.zeros((edges.size - 1, TERMS, TERMS))
-    every = BSpline(knots, np.eye(knots.size - degree - 1), degree)
+    every = interpolate.BSpline(knots, np.eye(knots.size - degree - 1), degree)
     for power in own:
         # in interval n only the basis splines n to n + degree are not 0
         basis[:, own, power] = every(edges[:-1], nu=power)[of, of + own] / math.factorial(power)

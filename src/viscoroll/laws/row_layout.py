@@ -509,7 +509,6 @@ def _significant_terms(values: Floats) -> Floats:
     powers of t above the last Chebyshev polynomial that is kept are exactly 0; a coefficient that
     is the same at all nodes has that value as its term T_0, and 0 after it.
     """
-    from numpy.polynomial.chebyshev import poly2cheb
 
     count = values.shape[-1]
     ends = values @ np.array(
@@ -519,7 +518,10 @@ def _significant_terms(values: Floats) -> Floats:
     terms = np.einsum("jk,k...->j...", to_chebyshev(len(values)), values)
     # from powers to Chebyshev polynomials exactly: an inverse matrix would lose eight digits
     to_terms = np.array(
-        [np.pad(poly2cheb(unit), (0, count - 1 - k)) for k, unit in enumerate(np.eye(count))]
+        [
+            np.pad(np.polynomial.chebyshev.poly2cheb(unit), (0, count - 1 - k))
+            for k, unit in enumerate(np.eye(count))
+        ]
     )
     of_both = terms[:, 1:] @ to_terms
     allowed = np.full(values.shape[2:], _NEGLIGIBLE)

@@ -4,9 +4,9 @@ relaxation modulus over time (:func:`read_relaxation`).
 
 import dataclasses
 import itertools
+import pathlib
 import re
 from collections import defaultdict
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -185,7 +185,7 @@ def _origin(path: Any, taken: list[Column]) -> dict[str, Any]:
     quantity -> unit in the file.
     """
     return {
-        "source": Path(path).name.encode(errors="replace").decode(),
+        "source": pathlib.Path(path).name.encode(errors="replace").decode(),
         "columns": {column.name: column.heading for column in taken},
         "units": {column.name: column.unit for column in taken},
     }

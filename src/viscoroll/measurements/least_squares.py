@@ -360,7 +360,7 @@ class Problem:
         that are not active stay at u, or at the end of their range nearest to it; where no
         coordinate is free all do.
         """
-        from scipy.optimize import least_squares
+        from scipy import optimize
 
         powers = np.zeros_like(u) if fixed is None else fixed
         single = np.count_nonzero(powers) == 1
@@ -389,7 +389,7 @@ class Problem:
             return np.vstack([self.slopes(self.residuals, at(v), free, _ONE_SIDED_STEP), rule])
 
         if free:
-            found = least_squares(
+            found = optimize.least_squares(
                 residuals,
                 whole[free],
                 jacobian,

@@ -79,10 +79,10 @@ class LeastSquares:
         row, value : coefficients, (1 + modes,), and right-hand side of a further residual, if any.
         Raises RuntimeError, from SciPy, where the iteration does not end in 100 (1 + modes) steps.
         """
-        from scipy.optimize import nnls
+        from scipy import optimize
 
         left = np.vstack([self.left, *row])
-        return nnls(left, np.append(self.right, value), maxiter=100 * self.size.size)[0]
+        return optimize.nnls(left, np.append(self.right, value), maxiter=100 * self.size.size)[0]
 
     def cost(self, unknowns: Floats) -> float:
         """Return the sum of the squared residuals, dimensionless, without that of a further row."""
@@ -526,12 +526,12 @@ def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Float
     rate : transit frequency, 1/s.
     Returns them in the inverse of the unit of the unknowns, (n,).
     """
-    from scipy.special import j1
+    from scipy import special
 
     z = 2.0j * rate * _WAVES[:, None] * problem.tau
     parts = np.concatenate([np.ones((_WAVES.size, 1)), z / (1.0 + z)], axis=1) / problem.size
     modulus = problem.floor + parts @ best
-    weight = j1(_WAVES) ** 2 / _WAVES  # in equal steps of ln u
+    weight = special.j1(_WAVES) ** 2 / _WAVES  # in equal steps of ln u
     # M is proportional to the sum of -Im(1/modulus), of which an unknown changes Im(part/modulus^2)
     return weight @ (parts / modulus[:, None] ** 2).imag / -(weight @ (1.0 / modulus).imag)
 

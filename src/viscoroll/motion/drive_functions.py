@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder
 
 from ..core import (
     Feedback,
@@ -357,7 +356,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
             when,
             motion=n,
         )
-    terms: Any = np.ascontiguousarray(polyder(speed.terms, axis=-1))
+    terms: Any = np.ascontiguousarray(np.polynomial.polynomial.polyder(speed.terms, axis=-1))
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 

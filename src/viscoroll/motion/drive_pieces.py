@@ -25,7 +25,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 
 from ..core import Floats, NDArray, Schedule, check_array, require_time_argument, shape_error
@@ -65,7 +64,7 @@ _POINTS = -np.cos(np.pi * np.arange(2 * TERMS - 1) / (2 * TERMS - 2))
 _POINTS[TERMS - 1] = 0.0
 #: Matrix from values at the nodes to Chebyshev coefficients, by the orthogonality of the
 #: polynomials at the nodes.
-_TO_SERIES = chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
+_TO_SERIES = np.polynomial.chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
 _TO_SERIES[[0, -1]] *= 0.5
 _TO_SERIES[:, [0, -1]] *= 0.5
 #: Matrix from Chebyshev coefficients to those of powers.

@@ -3,7 +3,7 @@
 import json
 import os
 import re
-from importlib.resources import files
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -199,7 +199,7 @@ def _write_matlab(table: Dataset, path: Path) -> None:
     path: file to write; it is replaced if it exists.
     Raises FileError if it cannot be written.
     """
-    from scipy.io import savemat
+    from scipy import io
 
     names = fields_of(table)
     # lookup blocks want no axes of one node
@@ -217,7 +217,7 @@ def _write_matlab(table: Dataset, path: Path) -> None:
         },
     }
     with replace_file(path) as temporary:
-        savemat(temporary, {"viscoroll": content}, do_compression=True)
+        io.savemat(temporary, {"viscoroll": content}, do_compression=True)
 
 
 def _write_header(dataset: Dataset, path: Path) -> None:
@@ -245,7 +245,7 @@ def _write_header(dataset: Dataset, path: Path) -> None:
     coupled = table.coupled is not None
     constants = (_table_constants if coupled else _law_constants)(table, name)
     evaluator = "".join(
-        files("viscoroll.tables").joinpath(f"c/{part}.h").read_text(encoding="utf-8")
+        resources.files("viscoroll.tables").joinpath(f"c/{part}.h").read_text(encoding="utf-8")
         for part in ("vr_law", "vr_table")[: 1 + coupled]  # vr_table.h needs vr_law.h
     )
     material = "\n".join(
