@@ -30,10 +30,6 @@ _CLOSE_STEP = 1.0 / 16.0
 _FAR_STEP = 0.5
 #: relative distance in u within which an extremum replaces other nodes
 _SEPARATION = 1e-6
-#: least size of kappa times a load, other than 0, for which the nodes have a crossing
-LEAST_LOAD = 1e-120
-#: largest size of kappa times a load
-MOST_LOAD = 1e80
 #: range of a gain divided by the longest retardation time
 _GAIN_RANGE = (1e-40, 1e8)
 #: distance from a zero at which it is found, relative and absolute: rounding

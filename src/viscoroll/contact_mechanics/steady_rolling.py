@@ -46,7 +46,7 @@ from ..laws import LawTable
 from .contact_table import Contacts, refuse_beyond
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
-from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
+from .rolling_resistance import branches, find_zeros, speed_nodes
 from .steady_loads import (
     Loads,
     find_speeds,
@@ -69,6 +69,10 @@ from .steady_states import (
 
 # --- Steady rolling with feedback on omega ---
 
+#: least size of kappa times a load, other than 0, for which the nodes have a crossing
+LEAST_LOAD = 1e-120
+#: largest size of kappa times a load
+MOST_LOAD = 1e80
 #: nodes into which an interval of V with partial slip is divided
 _STICK_NODES = 16
 #: nodes of the slip between its limits

@@ -46,9 +46,6 @@ _TERMS = 14
 #: further terms for each unit of theta; found by doubling all: results change by 3e-14 up to
 #: theta = 1
 _TERMS_PER_THETA = 6
-#: least number of terms with which :func:`solve` is called where shear matters: for nu < 1/2 its
-#: coupling has terms of all orders, and a number that changes with the speed would make it jump
-LEAST_TERMS = 30
 #: largest half contact length divided by the thickness; there doubling the terms still changes
 #: results by less than 1e-10
 LARGEST_THETA = 6.0
