@@ -20,7 +20,7 @@ import numpy as np
 from tqdm import tqdm
 
 from viscoroll import ModelWarning, Scene
-from viscoroll.contact_mechanics.contact import contact
+from viscoroll.contact_mechanics.contact_states import contact
 from viscoroll.contact_mechanics.stress import stress
 from viscoroll.core.plots import LINES, THIN, axis_label, draw, new_figure, save
 from viscoroll.core.quantities import SYMBOLS

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
-from viscoroll.contact_mechanics.contact import Values, contact
+from viscoroll.contact_mechanics.contact_states import Values, contact
 from viscoroll.contact_mechanics.stress import stress
 from viscoroll.core.errors import ConvergenceError
 from viscoroll.motion.roll import roll

@@ -6,14 +6,14 @@ import tracemalloc
 
 import numpy as np
 
-from viscoroll.laws import law_table
+from viscoroll.laws import law_tables
 from viscoroll.motion import flow
 
 
 def forget():
     """Neither a table nor a flow map is at hand; those on disk and compiled kernels stay."""
     flow._map.cache_clear()
-    law_table._made.cache_clear()
+    law_tables._made.cache_clear()
 
 
 def taken_beside(call):

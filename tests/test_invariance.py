@@ -10,7 +10,7 @@ from many import MATERIALS, UNLIKE
 from many import states as of_all_alphas
 
 import viscoroll as vr
-from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.ensembles import FIELDS
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"

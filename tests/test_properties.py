@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
-from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.ensembles import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 

@@ -12,7 +12,7 @@ from closeness import close
 
 import viscoroll as vr
 from viscoroll.core.files import write_dataset
-from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.ensembles import FIELDS
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"

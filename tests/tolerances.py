@@ -83,7 +83,7 @@ RATIO_ULP = 2.0
 #: k; measured 2.8.
 RATIO_COMPLEMENT_ULP = 4.0
 
-# --- contact_mechanics/contact.py (test_contact.py) ---
+# --- contact_mechanics/contact_states.py (test_contact.py) ---
 # A state by the rows of its law against 50 digits, relative: delta_star, Q and M; measured 3e-15
 # over 900 states.
 CONTACT = 5e-15
@@ -95,7 +95,7 @@ SPEED_LIMIT = 1e-10
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 
-# --- laws/law_table.py (test_law.py) ---
+# --- laws/law_tables.py (test_law.py) ---
 #: M/V, eta/F and H/F^2 by the axis of alpha, relative; measured 4.9e-15.
 AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.
@@ -307,7 +307,7 @@ STEADY_GRIP = 1e-14
 #: What goes in and what is lost, where force and torque nearly cancel; measured 2e-13.
 STEADY_POWER = 1e-11
 
-# --- contact_mechanics/validity.py (test_steadiness.py) ---
+# --- contact_mechanics/model_validity.py (test_steadiness.py) ---
 # N, M and their integrals by splines over sixteenths of octaves, against quadrature of the law
 # itself.
 STEADINESS = 1e-6

@@ -6,9 +6,9 @@ start and [run].  :mod:`.core.files` refuses unknown keys and wrong types; the o
 section describes refuse values out of range.
 """
 
+import pathlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from .core import (
@@ -306,7 +306,7 @@ def read_sections(path: FilePath) -> dict[str, Any]:
     """
     if str(path) in PRESETS:
         return {"preset": str(path)}
-    return {} if Path(path).suffix.lower() == SUFFIX else read_toml(path)
+    return {} if pathlib.Path(path).suffix.lower() == SUFFIX else read_toml(path)
 
 
 def read_law_source(path: FilePath) -> Any:

@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass, replace
 from functools import cached_property
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -104,7 +104,7 @@ class _PublicFunction:
         Returns the method of the roller; the function of the class.
         Raises ImportError where a package that its module needs is missing.
         """
-        function = getattr(import_module(__package__), self.name)
+        function = getattr(importlib.import_module(__package__), self.name)
         setattr(Methods, self.name, function)
         return function.__get__(roller, owner)
 

@@ -16,7 +16,7 @@ order, gets the same bits, and holds no other block in memory.
 """
 
 import copy
-from functools import lru_cache
+import functools
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -268,7 +268,7 @@ def _mix_bits(x: Words) -> Words:
     return x ^ (x >> np.uint64(31))
 
 
-@lru_cache(maxsize=2)
+@functools.lru_cache(maxsize=2)
 def _sequence(seed: int, dimensions: int) -> Any:
     """Return the scrambled Sobol sequence of scipy.stats.qmc at its start.
 
@@ -280,10 +280,10 @@ def _sequence(seed: int, dimensions: int) -> Any:
     Returns a :class:`scipy.stats.qmc.Sobol` of 52 bits.
     Raises ParameterError for more than 21201 dimensions, for which scipy has no numbers.
     """
-    from scipy.stats import qmc
+    from scipy import stats
 
     check_integer("number of random quantities with design 'sobol'", dimensions, 1, 21_201)
-    return qmc.Sobol(dimensions, bits=_BITS, rng=np.random.default_rng(seed))
+    return stats.qmc.Sobol(dimensions, bits=_BITS, rng=np.random.default_rng(seed))
 
 
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:

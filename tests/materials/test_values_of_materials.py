@@ -13,7 +13,7 @@ from closeness import close
 import viscoroll as vr
 from viscoroll.kernels.law.bessel_ratios import ratio_i2, ratio_k, ratio_r
 from viscoroll.laws.law_netcdf import law_table_of
-from viscoroll.laws.law_table import law_table
+from viscoroll.laws.law_tables import law_table
 from viscoroll.presets import PAPER_CYLINDER, PAPER_SECTION_5
 
 pytestmark = [

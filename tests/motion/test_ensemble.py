@@ -7,7 +7,7 @@ from drives import RUBBER
 
 import viscoroll as vr
 from viscoroll.motion import drive_functions
-from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.ensembles import FIELDS
 from viscoroll.motion.motion_arguments import STATES
 
 pytestmark = pytest.mark.filterwarnings(

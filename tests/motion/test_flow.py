@@ -12,7 +12,7 @@ from memory import forget
 
 import viscoroll as vr
 from viscoroll.motion import flow
-from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.ensembles import FIELDS
 from viscoroll.motion.many_motions import FLOW_PAYS
 from viscoroll.motion.motion_arguments import LOSSES
 

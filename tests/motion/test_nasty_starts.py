@@ -10,7 +10,7 @@ import tolerances as tol
 from maps import decay_time
 
 import viscoroll as vr
-from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.ensembles import FIELDS
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 #: mu kappa at alpha = 11, j = 1/2 where full slip returns: the maximum over V of kappa M over 6

@@ -17,7 +17,7 @@ from scipy import io
 
 import viscoroll as vr
 from viscoroll import tables
-from viscoroll.laws.law_table import law_table
+from viscoroll.laws.law_tables import law_table
 from viscoroll.tables import table_files
 from viscoroll.tables.law_dataset import NODES_ALLOWED, check_table
 

@@ -21,7 +21,7 @@ import viscoroll as vr
 from viscoroll import tables
 from viscoroll.core import files
 from viscoroll.laws.law_netcdf import law_table_of
-from viscoroll.laws.law_table import LawTable, law_axis, law_table
+from viscoroll.laws.law_tables import LawTable, law_axis, law_table
 from viscoroll.laws.row_layout import AXIS_FUNCTIONS, FUNCTIONS
 from viscoroll.materials.checked_netcdf import checksum
 from viscoroll.presets import read_law_source, read_roller

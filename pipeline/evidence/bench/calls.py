@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.law.law_callables import RESULTS
-from viscoroll.laws.law_table import make_table
+from viscoroll.laws.law_tables import make_table
 from viscoroll.motion import flow
 
 from ..timing import seconds_of, timed

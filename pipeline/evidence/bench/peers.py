@@ -17,7 +17,7 @@ from viscoroll.kernels.law.law_functions import length_and_moment, locate_row, m
 from viscoroll.kernels.law.law_record import Law, State
 from viscoroll.kernels.law.traction_functions import signed_creep, signed_traction, stick_argument
 from viscoroll.kernels.numerics.intrinsics import floats_at, integers_at
-from viscoroll.laws.law_table import law_table
+from viscoroll.laws.law_tables import law_table
 
 # --- LSODA, compiled, on Eq. (22) in (V, omega), free or driven, without events ---
 

@@ -14,7 +14,7 @@ from numpy.random import Generator
 
 import viscoroll as vr
 from pipeline.validation import FIELDS, closures, random_states
-from viscoroll.contact_mechanics.validity import stated_error
+from viscoroll.contact_mechanics.model_validity import stated_error
 from viscoroll.kernels.law import bessel_ratios
 from viscoroll.kernels.law import bessel_ratios as kernels
 

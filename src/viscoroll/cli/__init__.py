@@ -114,7 +114,7 @@ def _calls() -> dict[str, Callable[[], Any]]:
     Returns a dict, name for the progress bar -> function without arguments, whose result is not
     used; each makes its call when it is called, and nothing is written but the cache.
     """
-    from ..contact_mechanics.coupled_tables import coupled_law
+    from ..contact_mechanics import coupled_law
     from ..motion import flow
 
     scene = vr.presets.PAPER_SECTION_5

@@ -3,12 +3,12 @@ ranges, the scene, the output file; and the output of results, as a table on sta
 a complete file of a table or dataset.
 """
 
+import functools
 import json
+import operator
 import os
 from argparse import ArgumentTypeError, Namespace
 from collections.abc import Callable
-from functools import partial
-from operator import methodcaller
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +51,7 @@ def command(words: str, *options: Option) -> Callable[[CommandFunction], Command
 #: option(*names, **settings) -> an argument of a command, in the form of :func:`command`: a
 #: function that takes a parser of argparse, or a group of one, and adds the argument.  Names and
 #: settings are those of ``ArgumentParser.add_argument``.
-option: Callable[..., Option] = partial(methodcaller, "add_argument")
+option: Callable[..., Option] = functools.partial(operator.methodcaller, "add_argument")
 
 
 def numbers(text: str) -> Any:

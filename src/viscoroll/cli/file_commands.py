@@ -2,8 +2,6 @@
 ``identify``), of laws and grids, and FMUs (``viscoroll tables``, ``export`` and ``fmu``).
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import warnings

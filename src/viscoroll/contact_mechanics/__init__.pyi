@@ -9,6 +9,7 @@ from .assumptions import assess_measured_band as assess_measured_band
 from .assumptions import transit_frequency as transit_frequency
 from .assumptions import transit_speeds as transit_speeds
 from .body_data import BodyData as BodyData
+from .contact_states import contact as contact
 from .contact_table import FASTEST as FASTEST
 from .contact_table import Contacts as Contacts
 from .contact_table import evaluate_law as evaluate_law
@@ -19,6 +20,9 @@ from .coupled_tables import coupled_law as coupled_law
 from .coupled_tables import measure_errors as measure_errors
 from .coupled_tables import refuse_several_tables as refuse_several_tables
 from .free_rolling import FreeRolling as FreeRolling
+from .model_validity import LARGEST_LOSS as LARGEST_LOSS
+from .model_validity import Steadiness as Steadiness
+from .model_validity import validity as validity
 from .model_warnings import warn_of_contact as warn_of_contact
 from .model_warnings import warn_of_speeds as warn_of_speeds
 from .model_warnings import warn_of_start as warn_of_start
@@ -35,7 +39,6 @@ from .steady_loads import Loads as Loads
 from .steady_loads import loads_of as loads_of
 from .steady_result import Equilibria as Equilibria
 from .steady_result import pad as pad
+from .steady_rolling import steady as steady
 from .steady_states import Field as Field
 from .steady_states import states_at as states_at
-from .validity import LARGEST_LOSS as LARGEST_LOSS
-from .validity import Steadiness as Steadiness

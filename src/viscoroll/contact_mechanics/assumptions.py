@@ -5,8 +5,6 @@ An assumption has ``value``, the number that decides, ``holds``, a bool or boole
 the value, and ``sentence``, which says it in words; the first two are None where no number decides.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -68,7 +66,7 @@ class Assumption(NamedTuple):
         """ "yes" if it holds at every V, "no" if not, "?" where no number can decide."""
         return "?" if self.holds is None else "yes" if np.all(self.holds) else "no"
 
-    def worst_of_parts(self, last: Any) -> Assumption:
+    def worst_of_parts(self, last: Any) -> "Assumption":
         """Return the assumption with one state for each part of a sequence of states, and the same
         sentence.
 
@@ -120,10 +118,10 @@ class Validity(NamedTuple):
     under_axis : value: epsilon.  Above 1 the whole contact lies ahead of the axis, which the theory
         allows.
     quasistatic : value: speed divided by the shear wave speed; needs a density.
-    steady : a :class:`.validity.Steadiness`; value: the unsteadiness gamma |N(V)|/(1 + j), where
-        M = M(V) + N V' for slow changes of speed.  It decides whether the law of steady rolling may
-        drive a motion, and down to which speed; contact states and rolling at constant speed do not
-        depend on it.
+    steady : a :class:`.model_validity.Steadiness`; value: the unsteadiness gamma |N(V)|/(1 + j),
+        where M = M(V) + N V' for slow changes of speed.  It decides whether the law of steady
+        rolling may drive a motion, and down to which speed; contact states and rolling at constant
+        speed do not depend on it.
     creep : value: |delta|.  In full slip the two bodies pass the contact at different speeds, and
         the rolling moment is computed with the speed of the axis for both.  Needs omega.
     bodies : value: Dundurs' constant of the pair, of long times or of the instantaneous moduli,
@@ -185,7 +183,7 @@ class Validity(NamedTuple):
         return as_html(*self._summary())
 
 
-#: The report where no number can decide; :func:`.validity.validity` replaces what is known.
+#: The report where no number can decide; :func:`.model_validity.validity` replaces what is known.
 UNKNOWN = Validity(
     *(
         Assumption(None, None, sentence)

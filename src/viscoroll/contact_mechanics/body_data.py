@@ -8,15 +8,15 @@ p_0 = E* a/(2 R).  In a layer it follows from the field of the layer under such 
 same load.
 """
 
+import dataclasses
 import math
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
 from ..core import SI, Floats, check_number
-from ..laws.law_table import law_table
+from ..laws import law_table
 from ..materials import Measured, Pair
 from .assumptions import (
     LEAST_KAPPA,
@@ -140,7 +140,7 @@ def _layer_shear(nu: float) -> Floats:
     nu: Poisson's ratio of the layer.
     Returns a vector, one number for each ratio, dimensionless.
     """
-    from scipy.special import j1
+    from scipy import special
 
     found = np.empty(_THETA.size)
     for n, a in enumerate(_THETA.tolist()):  # of the thickness 1
@@ -158,7 +158,7 @@ def _layer_shear(nu: float) -> Floats:
         # a half-space to rounding, where k > s
         difference = np.where(k > s, 2.0 * k * z * np.exp(-k * z), f + bend)
         # dk = k d ln k, in equal steps of ln k, cancels 1/k of the pressure
-        shear = 0.5 * difference @ j1(k * a) * np.log(k[1] / k[0])
+        shear = 0.5 * difference @ special.j1(k * a) * np.log(k[1] / k[0])
         found[n] = np.abs(shear).max()
     return found
 
@@ -206,7 +206,7 @@ NO_SPEEDS = math.inf, 0.0
 _OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class BodyData:
     """Data of the bodies of one cylinder or of several that share their materials.
 

@@ -88,8 +88,8 @@ _KNOWN = (
 def field_names(
     fields: Iterable[str] | None, slopes: bool, method: str, scene: Parameters, si: bool
 ) -> tuple[str, ...]:
-    """Return the names of the fields that a call of :func:`.contact.contact` has to return, in
-    their order.
+    """Return the names of the fields that a call of :func:`.contact_states.contact` has to return,
+    in their order.
 
     Parameters
     ----------

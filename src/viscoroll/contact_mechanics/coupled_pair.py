@@ -17,15 +17,12 @@ strain along x:
     body b loses M_b + W_b      friction loses delta Q - W_base - W_cylinder      their sum is M + delta Q
 """  # noqa: E501
 
-from __future__ import annotations
-
+import functools
 import math
-from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import exp1, expi
+from scipy import optimize, special
 
 from ..core import ConvergenceError, Floats, ParameterError, described_error
 from ..kernels.law import coupled_states
@@ -52,7 +49,7 @@ _SCALES = np.geomspace(1e-7, 1.0, 200)
 _GROWTH = 0.4
 
 
-@cache
+@functools.cache
 def _fit() -> tuple[Floats, Floats]:
     """Return the nodes of the polynomials of kernels, and the matrix that fits them.
 
@@ -90,7 +87,7 @@ def _memory(X: Floats) -> Floats:
     found[near] = np.exp(x) * entire - np.expm1(x) * found[near]
     middle = ~(near | far)
     x = X[middle]
-    integral = np.where(x > 0.0, exp1(np.abs(x)), -expi(np.abs(x)))
+    integral = np.where(x > 0.0, special.exp1(np.abs(x)), -special.expi(np.abs(x)))
     found[middle] += np.exp(x) * integral
     inverse = 1.0 / X[far]
     # f ~ sum (-1)^k k!/X^(k+1)
@@ -129,7 +126,7 @@ def _half_space(body: Any, u: float, x: Floats) -> Floats:
     return np.array([normal, normal, body.local * coupling])
 
 
-@lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=4)
 def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     """Return what kernels of a bonded layer have in common at all speeds.
 
@@ -522,7 +519,7 @@ class CoupledRow:
 
         It is found between the onsets by Brent's method, to an error of :data:`_FREE_CREEP_ERROR`.
         """
-        return brentq(
+        return optimize.brentq(
             lambda creep: self.states([creep]).Q_over_mu[0], *self.onsets(), xtol=_FREE_CREEP_ERROR
         )
 

@@ -11,12 +11,12 @@ on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load
 it only through that ratio.
 """
 
+import functools
 import hashlib
 import math
+import pathlib
 import sys
 import threading
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -152,17 +152,16 @@ def _without_outliers(edges: Floats) -> Floats:
     edges: reduced creepages 2 kappa delta of the middle and of both onsets, (rows, 3).
     Returns the reduced middle creepages, (rows,).
     """
-    from scipy.ndimage import median_filter
-    from scipy.signal import savgol_filter
+    from scipy import ndimage, signal
 
     middle, low, high = edges.T
     place = (middle - low) / (high - low)  # 0 and 1 at the onsets
     rows = np.arange(place.size)
     for neighbours, far in _OUTLIERS:
-        good = np.abs(place - median_filter(place, neighbours, mode="nearest")) <= far
+        good = np.abs(place - ndimage.median_filter(place, neighbours, mode="nearest")) <= far
         place = np.interp(rows, rows[good], place[good])
     if place.size >= _SMOOTHED:
-        place = savgol_filter(place, _SMOOTHED, 2)
+        place = signal.savgol_filter(place, _SMOOTHED, 2)
     return low + (high - low) * place
 
 
@@ -235,11 +234,11 @@ def _spline(t: Floats, values: Floats, place: float) -> Any:
     place: number whose sign selects the side: t <= 0 if it is negative, else t >= 0.
     Returns a function of t in that side, in the unit of ``values``.
     """
-    from scipy.interpolate import CubicSpline
+    from scipy import interpolate
 
     half = t.size // 2
     side = slice(0, half + 1) if place < 0.0 else slice(half, None)
-    return CubicSpline(t[side], values[side], bc_type="clamped")
+    return interpolate.CubicSpline(t[side], values[side], bc_type="clamped")
 
 
 def _free_place(t: Floats, Q: Floats) -> float:
@@ -247,11 +246,11 @@ def _free_place(t: Floats, Q: Floats) -> float:
 
     t, Q: all nodes of the row, in [-1, 1], and Q/mu there, (m,) each.
     """
-    from scipy.optimize import brentq
+    from scipy import optimize
 
     # Q rises with t: its zero lies below the middle if Q is positive there
     sign = -1.0 if Q[t.size // 2] > 0.0 else 1.0
-    return float(brentq(_spline(t, Q, sign), *sorted((0.0, sign)), xtol=1e-15))
+    return float(optimize.brentq(_spline(t, Q, sign), *sorted((0.0, sign)), xtol=1e-15))
 
 
 def measure_errors(
@@ -353,7 +352,7 @@ def stored_law(scene: Any) -> LawTable:
     return coupled_table(scene.material, rows)
 
 
-@lru_cache(maxsize=32)
+@functools.lru_cache(maxsize=32)
 def _stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
     """Return the table of a pair at one mu, from its file, else solved and stored.
 
@@ -364,7 +363,7 @@ def _stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
     Raises ConvergenceError for a state that is not solved.
     """
     digest = hashlib.sha256(f"{sources_digest()} {pair!r} {mu!r}".encode())
-    for source in sorted(Path(__file__).parent.glob("coupled*.py")):
+    for source in sorted(pathlib.Path(__file__).parent.glob("coupled*.py")):
         digest.update(source.read_bytes())
     path = cache_root() / "coupled" / f"{digest.hexdigest()[:20]}.npz"
     damaged = "the cached table of the coupled solution is damaged ({}) and is made again"

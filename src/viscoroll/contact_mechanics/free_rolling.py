@@ -15,12 +15,10 @@ The own time of a material is a unit of time in which its slow time
 (:attr:`viscoroll.Prony.slow_time`) is near 1; u and g are in that unit.
 """
 
-from __future__ import annotations
-
+import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -197,7 +195,7 @@ class Curve:
         return np.maximum(W - grown * math.log(self.alpha) / (8.0 * self.alpha), 0.0)
 
 
-@lru_cache(maxsize=256)  # as many as the validity of an ensemble examines; 0.1 MB each
+@functools.lru_cache(maxsize=256)  # as many as the validity of an ensemble examines; 0.1 MB each
 def curve_of(material: float | Prony) -> Curve | None:
     """Return the curve of a material in its own time, alpha or a series, which is kept for the next
     call; None for an elastic one, which rolls for ever.
@@ -279,7 +277,7 @@ class FreeRolling:
     units: tuple[str, str, str] = ("", "", "")
 
     @classmethod
-    def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
+    def of_scene(cls, scene: Parameters, V: Any) -> "FreeRolling":
         """Return the states of a scene at given speeds.
 
         scene: dimensionless parameters, numbers or arrays, with one or several materials or alphas,
@@ -318,7 +316,7 @@ class FreeRolling:
         speed = 1.0 / (scene.kappa * unit)
         return cls(materials, index, u, g, speed, time=unit, length=1.0 / scene.kappa)
 
-    def scaled(self, scale: Scale) -> FreeRolling:
+    def scaled(self, scale: Scale) -> "FreeRolling":
         """Return the same states, whose results are in m/s, s and m.
 
         scale: units of the cylinder; with those of a scene, which is dimensionless, this object
@@ -334,7 +332,7 @@ class FreeRolling:
             units=(" m/s", " s", " m"),
         )
 
-    def take(self, index: tuple[Any, ...]) -> FreeRolling:
+    def take(self, index: tuple[Any, ...]) -> "FreeRolling":
         """Return some of the states, as a new object of the same materials and units.
 
         index: index of numpy into u, a tuple of integers or arrays, one for each axis; the other
@@ -376,7 +374,7 @@ class FreeRolling:
                     out[:, part] = function(curve, *(array[part] for array in arrays))
         return [row.reshape(self.u.shape)[()] for row in out]  # [()]: a number without axes
 
-    @cached_property
+    @functools.cached_property
     def unsteadiness(self) -> Any:
         """g |N|, dimensionless, >= 0, in the shape of u; 0 at rest and for elastic bodies, NaN
         without gamma.

@@ -8,11 +8,11 @@ coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m
 moment over P R.
 """
 
-from bisect import bisect
+import bisect
+import dataclasses
+import functools
+import operator
 from collections.abc import Collection
-from dataclasses import replace
-from functools import lru_cache
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -30,8 +30,8 @@ from .assumptions import (
 )
 from .body_data import BodyData, extent_of, is_outside
 from .free_rolling import FreeRolling, curve_of
+from .model_validity import STEADY_LIMIT
 from .parameters import PARAMETERS, Parameters, Roller
-from .validity import STEADY_LIMIT
 
 #: Creepage from which on a start in full slip has M in doubt, dimensionless: the surface speeds
 #: then differ by V.
@@ -74,7 +74,7 @@ _EXAMINED = 256
 #: Data of materials for which this process has warned already.
 _warned_records: set[Measured] = set()
 #: Takes the numbers of a scene.
-_numbers_of = attrgetter(*PARAMETERS)
+_numbers_of = operator.attrgetter(*PARAMETERS)
 
 
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
@@ -329,7 +329,7 @@ def _is_too_slow(material: Any, alpha: float, u: float, gamma: float, j: float) 
         return True
     lower_ends, slow = _slow_starts(alpha if material is None else None, material, gamma, j)
     # the entry at or below u; below the table the first one
-    return slow[max(bisect(lower_ends, u) - 1, 0)]
+    return slow[max(bisect.bisect(lower_ends, u) - 1, 0)]
 
 
 def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> list[str]:
@@ -368,7 +368,7 @@ def _worst_start_faults(scene: Parameters, numbers: list[Any], driven: bool) -> 
     return list(dict.fromkeys(faults))
 
 
-@lru_cache(maxsize=64)
+@functools.lru_cache(maxsize=64)
 def _slow_starts(
     alpha: float | None, material: Prony | Bodies | None, gamma: float, j: float
 ) -> tuple[list[float], list[bool]]:
@@ -385,6 +385,6 @@ def _slow_starts(
     scene = Parameters(alpha, kappa=1.0, mu=1.0, gamma=gamma, j=j, material=material)
     free = FreeRolling.of_scene(scene, 0.0)
     curve: Any = curve_of(free.materials[0])  # an elastic one, without a curve, is never slow
-    free = replace(free, u=np.exp(curve.ln_u))
+    free = dataclasses.replace(free, u=np.exp(curve.ln_u))
     slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.distance()
     return (free.u * free.speed).tolist(), slow.tolist()

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
@@ -29,8 +29,7 @@ from ..core import (
     shape_error,
     slope_tan_cos,
 )
-from ..laws import LawGrid, LawTable
-from ..laws.law_table import law_table
+from ..laws import LawGrid, LawTable, law_table
 from ..materials import HIGHEST_ALPHA, Bodies, Cover, Prony
 
 #: Names of the dimensionless numbers of a scene.
@@ -126,7 +125,7 @@ class Roller:
 
     def _key(self) -> tuple[Any, ...]:
         """All fields in a form that compares and hashes."""
-        values = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        values = (getattr(self, field.name) for field in dataclasses.fields(self))  # type: ignore[arg-type]
         # + 0.0: -0 and 0 are equal
         return tuple(
             (x.shape, (x + 0.0).tobytes()) if isinstance(x, np.ndarray) else x for x in values
@@ -140,7 +139,7 @@ class Roller:
         return hash(self._key())
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Parameters(Roller):
     """Dimensionless parameters, as a :class:`viscoroll.Scene` takes them; each a number or an
     array, and they broadcast.
@@ -291,7 +290,7 @@ class Parameters(Roller):
             changes = {"alpha": None, "material": None} | changes
         elif given is not None:
             changes = {"alpha": None, "material": given} | changes
-        return replace(self, **changes)
+        return dataclasses.replace(self, **changes)
 
     @property
     def series(self) -> Prony | None:

@@ -6,10 +6,10 @@ G on the speed turns M(V) = load into M(V) - G V = load, the same problem with a
 is dimensionless unless units are named; a law is a :class:`LawTable`, the rows of one material.
 """
 
+import functools
+import itertools
 import math
 from collections.abc import Callable
-from functools import lru_cache
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -30,10 +30,6 @@ _CLOSE_STEP = 1.0 / 16.0
 _FAR_STEP = 0.5
 #: relative distance in u within which an extremum replaces other nodes
 _SEPARATION = 1e-6
-#: least size of kappa times a load, other than 0, for which the nodes have a crossing
-LEAST_LOAD = 1e-120
-#: largest size of kappa times a load
-MOST_LOAD = 1e80
 #: range of a gain divided by the longest retardation time
 _GAIN_RANGE = (1e-40, 1e8)
 #: distance from a zero at which it is found, relative and absolute: rounding
@@ -92,7 +88,7 @@ class Branches(NamedTuple):
         indices = []
         nodes = []
         tolerance = EXTREMUM_RTOL * np.abs(load)
-        for first, last in pairwise([0, *self.extremum.nonzero()[0], self.u.size - 1]):
+        for first, last in itertools.pairwise([0, *self.extremum.nonzero()[0], self.u.size - 1]):
             # searchsorted needs rising values: a falling branch is searched with the other sign
             rising = self.resistance[last] > self.resistance[first]
             sign = 1.0 if rising else -1.0
@@ -163,7 +159,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     return ResistanceExtrema(V, M, is_maximum=np.arange(V.size) % 2 == 0)
 
 
-@lru_cache(maxsize=16)
+@functools.lru_cache(maxsize=16)
 def branches(law: LawTable, gain: float) -> Branches:
     """Return the curve kappa (M - G V) over speed, divided into branches on which it is monotone.
 
@@ -280,12 +276,12 @@ def zeros_between(
     Returns (index of the function; zero, by function and ascending, to the rounding of x; whether
     the function falls there), (zeros,) each.
     """
-    from scipy.optimize.elementwise import find_minimum, find_root
+    from scipy.optimize import elementwise
 
     n, k = _extrema(y)
     if n.size:
         sign = np.sign(y[n, k])
-        found = find_minimum(
+        found = elementwise.find_minimum(
             lambda x, n, sign: sign * function(x, n),
             (x[n, k - 1], x[n, k], x[n, k + 1]),
             args=(n, sign),
@@ -297,7 +293,9 @@ def zeros_between(
         y[n, k] = (sign * found.f_x)[other]
     positive = y > 0.0
     n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
-    found = find_root(function, (x[n, k], x[n, k + 1]), args=(n,), tolerances=_ZERO_TOLERANCE)
+    found = elementwise.find_root(
+        function, (x[n, k], x[n, k + 1]), args=(n,), tolerances=_ZERO_TOLERANCE
+    )
     # a node whose value is rounding may have the other sign here: the zero is at that node
     return n, np.where(found.success, found.x, found.bracket[0]), positive[n, k]
 

@@ -19,7 +19,7 @@ other one the speeds.  Where friction does not suffice, the part of the load tha
 is returned, and the state does not exist.
 """
 
-from functools import partial
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -122,8 +122,8 @@ def loads_of(
     slope: ArrayLike | None,
     V: ArrayLike | None,
 ) -> Loads:
-    """Check the loads of a call of :func:`.steady.steady`, and broadcast them with the parameters
-    of the scene.
+    """Check the loads of a call of :func:`.steady_rolling.steady`, and broadcast them with the
+    parameters of the scene.
 
     scene : dimensionless parameters of the roller, on the slope, of which alpha, kappa, mu and j
         are read; one alpha or one material, the others numbers or arrays.
@@ -317,7 +317,7 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     for n, kappa in enumerate(loads.kappa):
         contacts = loads.contacts(law, n)
         for sign in (1.0, -1.0):
-            left = partial(_torque_left_by_speed, contacts, loads, n, sign)
+            left = functools.partial(_torque_left_by_speed, contacts, loads, n, sign)
             zeros = find_zeros(left, nodes, rounding[n])
             # zeros are log2(kappa V)
             parts.append(broadcast_rows((n, sign, np.exp2(zeros) / kappa), zeros.shape))

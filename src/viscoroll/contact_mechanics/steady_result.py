@@ -4,9 +4,9 @@ P is the load that presses the cylinder on its base, R its radius, T_ref the uni
 R/l0 with the contact length at rest l0, and mu the coefficient of friction.
 """
 
+import dataclasses
+import functools
 from collections.abc import Iterable
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,7 +45,7 @@ _FIELDS = (
 _LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "efficiency"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Loss:
     """Power balance of steady rolling, in the shape of the equilibria, with NaN where the
     equilibria are padded.
@@ -361,7 +361,7 @@ class Steady(Equilibria):
         """
         return [*self._values, "loss", "reason"]
 
-    @cached_property
+    @functools.cached_property
     @np.errstate(invalid="ignore", divide="ignore")  # where V or the input is 0
     def loss(self) -> Loss:
         """Return the powers of each equilibrium, its coefficient of rolling resistance and its

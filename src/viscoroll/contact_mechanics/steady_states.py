@@ -16,10 +16,8 @@ law, dQ_dV at fixed omega, dQ_domega, dM_half_space_dV, dM_cylinder_dV and both 
 omega, or omega, the eigenvalues and the moments without traction.
 """
 
-from __future__ import annotations
-
-from enum import IntEnum
-from functools import partial
+import enum
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,7 +49,7 @@ _ROWS = (
 )
 
 
-class Field(IntEnum):
+class Field(enum.IntEnum):
     """Index of the row of a quantity in an array of states, (12, n).
 
     From row 6 on the array has the slopes of the law while states are computed, in a frame where V
@@ -108,7 +106,7 @@ class States(NamedTuple):
     @classmethod
     def of(
         cls, loads: Loads, load: Integers, sign: Any, answers: Floats, free: Any = None
-    ) -> States:
+    ) -> "States":
         """Make the states from values of the law in a frame where V > 0: give V, Q and the moments
         the signs of the motion, and add omega and the eigenvalues.
 
@@ -134,7 +132,7 @@ class States(NamedTuple):
         return cls(load, rows)
 
     @classmethod
-    def at_rest(cls, loads: Loads, load: Integers, law: LawTable) -> States:
+    def at_rest(cls, loads: Loads, load: Integers, law: LawTable) -> "States":
         """Return the states of V = omega = 0, the limit of slow rolling.
 
         The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its
@@ -194,16 +192,16 @@ class States(NamedTuple):
         return cls(load, rows)
 
     @classmethod
-    def none(cls) -> States:
+    def none(cls) -> "States":
         """No state."""
         return cls(np.empty(0, np.int64), np.empty((len(Field), 0)))
 
     @classmethod
-    def joined(cls, *parts: States) -> States:
+    def joined(cls, *parts: "States") -> "States":
         """States of all parts, one after another."""
         return cls(*map(np.hstack, zip(*parts, strict=True)))
 
-    def existing(self) -> States:
+    def existing(self) -> "States":
         """Return the states for which the friction suffices (omega is finite) as new
         :class:`States`, maybe none, sorted by load, then by rising |V|; of equal |V| in their
         order.
@@ -328,7 +326,9 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers,
     curve = LoadCurve(found.u, found.resistance, found.extremum, gain)
     u = np.empty(which.size)
     run_blocks(
-        partial(crossing_loop, law.record, curve, signed[which], node, u), which.size, _BLOCK
+        functools.partial(crossing_loop, law.record, curve, signed[which], node, u),
+        which.size,
+        _BLOCK,
     )
     return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 

@@ -8,9 +8,9 @@ over half the length, beta the part of it that sticks, zeta half the transit tim
 time of the material, alpha the instantaneous over the long-time modulus.
 """
 
+import functools
+import itertools
 import math
-from functools import lru_cache
-from itertools import pairwise
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -46,7 +46,7 @@ _WAVES = -25.0, 80.0, 0.12
 
 
 #: States of a pair at one speed, which are kept for later calls.
-_coupled_row = lru_cache(maxsize=16)(CoupledRow)
+_coupled_row = functools.lru_cache(maxsize=16)(CoupledRow)
 
 
 def _broadcast_states(
@@ -405,7 +405,7 @@ def _stress_of_law(
         alphas = read_alpha(start, stop)
         material: Any = scene.material
         ends: Any = [] if many is None else 1 + np.flatnonzero(np.diff(alphas))
-        for first, last in pairwise([0, *ends, stop - start]):
+        for first, last in itertools.pairwise([0, *ends, stop - start]):
             part = points._make(each[first:last] if each.size > 1 else each for each in points)
             here = slice(start + first, start + last)
             if many is not None:

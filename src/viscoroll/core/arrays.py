@@ -10,13 +10,13 @@ of numba: no second compilation, no threading layer that could clash with that o
 safe in forked processes and from several threads.
 """
 
+import contextlib
 import math
 import os
 import threading
 from collections import deque
 from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -477,7 +477,7 @@ def _environment_threads() -> int | None:
     """
     if not (given := os.environ.get("VISCOROLL_THREADS")):
         return None
-    with suppress(ValueError):
+    with contextlib.suppress(ValueError):
         if (count := int(given)) >= 1:
             return count
     raise ParameterError("VISCOROLL_THREADS", repr(given), "a whole number >= 1, or not set")

@@ -4,10 +4,10 @@ the labels of xarray and pandas.
 Labels are removed from the arguments of a call, with their units, and put on its results.
 """
 
+import inspect
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from inspect import signature
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -225,7 +225,7 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
         some compiled code, is accepted; parameters with defaults are allowed.
     """
     try:
-        parameters = signature(function)
+        parameters = inspect.signature(function)
         parameters.bind(0.0)
     except ValueError:  # compiled code may have no signature
         return

@@ -18,14 +18,14 @@ a key of a file, a heading of a column, or an argument of a public call (:func:`
 """
 
 import copyreg
+import datetime
+import enum
+import functools
+import importlib
 import inspect
 import sys
 import warnings
 from collections.abc import Collection, Iterable
-from datetime import date, timedelta
-from enum import IntEnum
-from functools import cache, wraps
-from importlib import import_module
 from typing import Any
 
 # --- The exceptions of this package, and the meaning of a kernel's status code ---
@@ -92,8 +92,8 @@ _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
     (bytes, "bytes"),
     (bool, "a truth value"),
     (complex, "a complex number"),
-    (date, "a date"),
-    (timedelta, "a duration"),
+    (datetime.date, "a date"),
+    (datetime.timedelta, "a duration"),
     (dict, "a dictionary"),
     ((list, tuple), "a list"),
 )
@@ -350,7 +350,7 @@ class ModelWarning(UserWarning):
     """
 
 
-class MotionStatus(IntEnum):
+class MotionStatus(enum.IntEnum):
     """How a motion ended.
 
     A motion is complete if it is DONE (it reached the last output time) or RESTED (its speeds fell
@@ -438,7 +438,7 @@ def import_extra(package: str, extra: str) -> Any:
         too.
     """
     try:
-        return import_module(package)
+        return importlib.import_module(package)
     except ModuleNotFoundError as error:
         if error.name != package:
             raise  # the package is installed, and one of its own dependencies is not
@@ -465,7 +465,7 @@ def suggestion(name: str, candidates: Iterable[str]) -> str:
     return f"; did you mean {similar[0]!r}?" if similar else ""
 
 
-@cache
+@functools.cache
 def _suggesting(function: Any) -> Any:
     """Return a function that calls another one, and adds to its TypeError of an unknown argument
     the name of the most similar argument.
@@ -473,7 +473,7 @@ def _suggesting(function: Any) -> Any:
     function: function or method of the package; the result is kept for the next call.
     """
 
-    @wraps(function)
+    @functools.wraps(function)
     def call(*arguments: Any, **named: Any) -> Any:
         """Call the function with ``arguments`` and ``named``, and return its result; to its
         TypeError of an unknown argument name a suggestion is added.

@@ -7,6 +7,8 @@ package detects damage before a library parses the file.
 Sections of TOML files are checked for unknown keys and wrong types, with the number of the line.
 """
 
+import dataclasses
+import functools
 import hashlib
 import io
 import math
@@ -17,9 +19,6 @@ import tomllib
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import is_dataclass
-from functools import partial
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
 
@@ -35,7 +34,7 @@ else:
     DataArray = DataFrame = Dataset = Figure = Any
 
 #: Path of a file, as callers give it.
-FilePath = str | PathLike[str]
+FilePath = str | os.PathLike[str]
 
 # --- Files that are written whole, and read if they are as they were written ---
 
@@ -52,7 +51,7 @@ def as_path(path: Any) -> Path:
     Raises FileError for what is no path, as None, a number, bytes or an open file, and for a text
     with a null character.
     """
-    if not isinstance(path, str | PathLike) or "\0" in str(path):
+    if not isinstance(path, str | os.PathLike) or "\0" in str(path):
         raise FileError(
             describe_value(path), "is not a path: must be a text without null characters, or a Path"
         )
@@ -349,7 +348,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
     try:
         with as_file_error(path, "cannot be read"):
             text = Path(path).read_text(encoding="utf-8-sig")
-            content = tomllib.loads(text, parse_float=partial(_finite, path))
+            content = tomllib.loads(text, parse_float=functools.partial(_finite, path))
         msgspec.msgpack.encode(content)  # tomllib reads longer integers
     except OverflowError as error:
         problem = "has an integer of more than 64 bits: write a shorter or a decimal number"
@@ -457,7 +456,7 @@ def _sections_in(kind: Any) -> list:
     return [
         each
         for each in (kind, *get_args(kind))
-        if is_dataclass(each) or hasattr(each, "__struct_fields__")
+        if dataclasses.is_dataclass(each) or hasattr(each, "__struct_fields__")
     ]
 
 

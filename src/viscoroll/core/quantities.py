@@ -14,11 +14,11 @@ Values without a unit, and the labels of xarray and pandas, stay as they are.
 """
 
 import csv
+import datetime
+import decimal
 import re
-from datetime import timedelta
-from decimal import Decimal
 from functools import lru_cache
-from importlib.resources import files
+from importlib import resources
 from numbers import Real
 from typing import Any, NamedTuple, Protocol, TypeGuard
 
@@ -31,7 +31,7 @@ from .errors import ParameterError, describe_value, described_error, unit_error
 
 def _rows(table: str) -> list[list[str]]:
     """Return the rows of a ``table``, a CSV file beside this module, without its head."""
-    with (files(__package__) / table).open(encoding="utf-8") as file:
+    with (resources.files(__package__) / table).open(encoding="utf-8") as file:
         return [*csv.reader(file)][1:]
 
 
@@ -467,7 +467,7 @@ def _as_floats(name: str, value: Any) -> Any:
 
 def is_real(value: Any) -> TypeGuard[float]:
     """Whether an object is a real number of Python or another library, and not a truth value."""
-    return isinstance(value, Real | Decimal) and not isinstance(value, bool)
+    return isinstance(value, Real | decimal.Decimal) and not isinstance(value, bool)
 
 
 def _is_quantity(value: Any) -> bool:
@@ -569,7 +569,7 @@ def _to_seconds(name: str, value: Any) -> Any:
     the value is no duration, and for lists and masked arrays of durations.
     Raises ParameterError for a duration in months or years, or without a unit.
     """
-    if isinstance(value, timedelta):  # that of pandas is one too, and has nanoseconds
+    if isinstance(value, datetime.timedelta):  # that of pandas is one too, and has nanoseconds
         value = (
             value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)
         )

@@ -2,9 +2,9 @@
 figures.
 """
 
+import dataclasses
 import html
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -148,7 +148,7 @@ class Result:
         >>> "onset_time" in motion.keys()
         True
         """
-        return [field.name for field in fields(self) if not field.name.startswith("_")]  # type: ignore[arg-type]
+        return [field.name for field in dataclasses.fields(self) if not field.name.startswith("_")]  # type: ignore[arg-type]
 
     def __getitem__(self, name: str) -> Any:
         if name not in self:

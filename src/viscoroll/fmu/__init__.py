@@ -15,15 +15,15 @@ from variables.csv, in the order of their value references, which start with 1.
 
 import csv
 import hashlib
+import os
 import re
 import shutil
 import subprocess
+import tempfile
 import uuid
 import zipfile
 from importlib.resources import files
-from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -328,7 +328,9 @@ def build_description(name: str) -> str:
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
 
 
-def build(given: Any, path: str | PathLike[str], model: str = "Roller", version: int = 2) -> None:
+def build(
+    given: Any, path: str | os.PathLike[str], model: str = "Roller", version: int = 2
+) -> None:
     """Write an FMU of a cylinder, with its sources and a library for this machine, whole or not at
     all.
 
@@ -399,7 +401,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     compiler = shutil.which("cc")
     if compiler is None:
         raise MissingDependencyError("cc, a compiler of C (as gcc or clang),", None)
-    with TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         tables.export(law, folder / "law.h")
         texts = {

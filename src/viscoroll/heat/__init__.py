@@ -11,9 +11,9 @@ The law of a pair depends on kappa V a_T of one body and on the ratio of both ti
 pair of temperatures has a law of its own, of which the rows are made where they are read.
 """
 
+import functools
 import warnings
 from collections.abc import Callable
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,10 +24,10 @@ from ..contact_mechanics import (
     evaluate_law,
     pad,
     resolve_model,
+    steady,
     warn_of_contact,
     zeros_between,
 )
-from ..contact_mechanics.steady import steady
 from ..core import (
     Booleans,
     Dataset,
@@ -165,7 +165,7 @@ def zeros_of(
 
     parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
     for first in range(0, ambient.size, _BLOCK):
-        balance = partial(rest, first)
+        balance = functools.partial(rest, first)
         around = ambient[first : first + _BLOCK]
         # a margin of 1 K, so that a zero at either end lies between nodes
         nodes = curve.nodes(around.min() - 1.0, hottest[first : first + _BLOCK].max() + 1.0)
@@ -517,7 +517,7 @@ def pair_temperatures(
     Zeros are sought from the cells of a grid of 41 by 41 temperatures in which both balances change
     their sign; the balances hold to 1e-9 (``tests/test_heat.py``).
     """
-    from scipy.optimize import root
+    from scipy import optimize
 
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
@@ -579,7 +579,7 @@ def pair_temperatures(
     cells = (corners.any(axis=(3, 4)) & ~corners.all(axis=(3, 4))).all(axis=0)
     found: list[Any] = []
     for start in 0.5 * (grid[:, :-1, :-1] + grid[:, 1:, 1:])[:, cells].T:
-        at = root(lambda theta: rest(theta[:, None])[:, 0], start, jac=slopes, tol=1e-14).x
+        at = optimize.root(lambda theta: rest(theta[:, None])[:, 0], start, jac=slopes, tol=1e-14).x
         good = np.abs(rest(at[:, None])).max() <= _RESIDUAL * np.abs(at - around).max()
         if good and all(np.abs(at - other).max() > _SAME for other in found):
             found.append(at)

@@ -6,9 +6,9 @@ At a given temperature the speed of a balance is unique, since V M(V) does not f
 are the extrema of that speed over the temperature.  :func:`warming` integrates the balance of heat.
 """
 
+import itertools
 import math
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -171,7 +171,7 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
     Returns (largest speed, m/s, or load, N/m; temperature from which a larger one leads beyond the
     allowed one; whether the cold branch ends there), arrays in the shape of the states.
     """
-    from scipy.optimize.elementwise import find_root
+    from scipy.optimize import elementwise
 
     if "load" in given:
         roller = roller.replace(load=given["load"])
@@ -191,7 +191,7 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
         return coldest - allowed
 
     every = np.arange(states.load.size)
-    found = find_root(above, _LN_RANGE, args=(every,), tolerances=_TOLERANCE)
+    found = elementwise.find_root(above, _LN_RANGE, args=(every,), tolerances=_TOLERANCE)
     # the last below the limit: at the end of a branch it misses the allowed temperature
     below = np.where(found.success, found.bracket[0], 0.0)
     short = -above(below, every)
@@ -288,7 +288,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     -----
     The speeds have a relative error below 1e-8 (``tests/test_heat.py``).
     """
-    from scipy.optimize.elementwise import find_minimum, find_root
+    from scipy.optimize import elementwise
 
     ambient = check_number("ambient", ambient, unit="degC")
     conductance = check_number("conductance", conductance, unit="W m-1 K-1", above=0.0)
@@ -307,7 +307,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
         def rest(ln: Floats, theta: Floats, off: Floats) -> Floats:
             return states.heat(np.zeros(ln.size, np.int64), theta, np.exp(ln)) - off
 
-        found = find_root(rest, _LN_RANGE, args=(theta, off), tolerances=_TOLERANCE)
+        found = elementwise.find_root(rest, _LN_RANGE, args=(theta, off), tolerances=_TOLERANCE)
         return np.where(found.success, found.x, _LN_RANGE[1])
 
     # from the hottest to ambient, near which V rises with the temperature
@@ -320,7 +320,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     k = 1 + np.flatnonzero(bend * (y[1:-1] < math.log(FASTEST)))
     sign = np.sign(bend[k - 1])  # -1 at a maximum
     triple = x[k - 1], x[k], x[k + 1]
-    found = find_minimum(lambda x, sign: sign * ln_V(x), triple, args=(sign,))
+    found = elementwise.find_minimum(lambda x, sign: sign * ln_V(x), triple, args=(sign,))
     # log2 a_T falls with temperature
     order = np.argsort(-found.x)
     V = np.exp(sign * found.f_x)
@@ -515,7 +515,7 @@ def warming(
     heat less given_off is what is stored to 1e-6, and the end of a long warming is a stable
     equilibrium (``tests/test_heat.py``).
     """
-    from scipy.integrate import solve_ivp
+    from scipy import integrate
 
     scale = scale_of(roller)
     start = ambient if start is None else start
@@ -541,12 +541,12 @@ def warming(
     y = np.concatenate([theta, np.zeros(2 * theta.size)])
     parts = [y[:, None]] if times[0] == 0.0 else []
     last = times[-1]
-    for span in pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
+    for span in itertools.pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
         own = times[(times > span[0]) & (times <= span[1])]
         # the end of the span too, where the next one starts; it is no output unless it is in
         # ``own``
         stops = np.union1d(own, span[1])
-        found = solve_ivp(
+        found = integrate.solve_ivp(
             rates, span, y, "DOP853", stops, rtol=_TIME_TOLERANCE, atol=_TIME_TOLERANCE
         )
         if not found.success:

@@ -22,10 +22,11 @@ from .law_rows import Rows as Rows
 from .law_rows import evaluate_by_modes as evaluate_by_modes
 from .law_rows import grade as grade
 from .law_rows import series_record as series_record
-from .law_table import LawAxis as LawAxis
-from .law_table import LawTable as LawTable
-from .law_table import coupled_table as coupled_table
-from .law_table import law_axis as law_axis
+from .law_tables import LawAxis as LawAxis
+from .law_tables import LawTable as LawTable
+from .law_tables import coupled_table as coupled_table
+from .law_tables import law_axis as law_axis
+from .law_tables import law_table as law_table
 from .laws_per_element import count_laws as count_laws
 from .laws_per_element import record_of_alphas as record_of_alphas
 from .laws_per_element import record_of_materials as record_of_materials

@@ -47,7 +47,6 @@ from ..materials import Cover
 from .cover_solve import (
     LARGE_ALPHA,
     LARGEST_THETA,
-    LEAST_TERMS,
     CoverModes,
     CoverState,
     decays,
@@ -61,6 +60,10 @@ from .row_layout import CoverRows, constant_rows, steady_table
 
 # --- What shear does in the contact of a cover, to first order ---
 
+#: least number of terms with which :func:`.cover_solve.solve` is called where shear matters: for
+#: nu < 1/2 its coupling has terms of all orders, and a number that changes with the speed would
+#: make it jump
+LEAST_TERMS = 30
 #: highest order of the local coupling, whose terms fall as 1/n^2: highest of
 #: :func:`.cover_solve.decays`
 _LOCAL_ORDERS = 100

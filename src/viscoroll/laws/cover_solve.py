@@ -46,9 +46,6 @@ _TERMS = 14
 #: further terms for each unit of theta; found by doubling all: results change by 3e-14 up to
 #: theta = 1
 _TERMS_PER_THETA = 6
-#: least number of terms with which :func:`solve` is called where shear matters: for nu < 1/2 its
-#: coupling has terms of all orders, and a number that changes with the speed would make it jump
-LEAST_TERMS = 30
 #: largest half contact length divided by the thickness; there doubling the terms still changes
 #: results by less than 1e-10
 LARGEST_THETA = 6.0
@@ -498,11 +495,11 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> tuple[Floa
     1, 2); its mean, mirrored about the middle of the contact, with the pressure as weight, (2,)),
     with the base first; 0 of a body of nu = 1/2 and of a rigid one.
     """
-    from scipy.fft import dct, dst
+    from scipy import fft
 
     p = np.zeros(_INTERVALS + 1)
     # with x = cos t the pressure is sum q_m sin(m t); the sine transform has a factor 2
-    p[1:-1] = 0.5 * dst(_pressure_terms(modes, z, state, _INTERVALS - 1), type=1)
+    p[1:-1] = 0.5 * fft.dst(_pressure_terms(modes, z, state, _INTERVALS - 1), type=1)
     t = np.arange(_INTERVALS + 1) * (math.pi / _INTERVALS)
     x = np.cos(t)
     # dx = sin t dt; p in reverse order is the pressure mirrored about the middle
@@ -526,7 +523,7 @@ def local_pressure(modes: CoverModes, z: float, state: CoverState) -> tuple[Floa
         values[n] = body.local * (body.instant * modes.alpha * p + strengths @ _memory(p, x, a * z))
     # Chebyshev coefficients of values at these points; the last one, also twice its value, is not
     # used
-    terms = dct(values, type=1, axis=1).T / _INTERVALS
+    terms = fft.dct(values, type=1, axis=1).T / _INTERVALS
     terms[0] *= 0.5
     return terms, mirrored
 

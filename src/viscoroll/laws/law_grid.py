@@ -8,12 +8,12 @@ Tensor splines by scipy are packed into the form that compiled code reads (:func
 ``kernels.splines``).
 """
 
+import contextlib
+import dataclasses
 import io
 import math
+import os
 from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -36,7 +36,7 @@ from ..core import (
     read_sealed,
 )
 from .law_rows import FIELDS, CoupledRows
-from .law_table import LawTable, coupled_table
+from .law_tables import LawTable, coupled_table
 
 # --- The law of a grid ---
 
@@ -61,7 +61,7 @@ _HIGHEST = {"beta": 1.0, "lam": np.inf, "delta_star": np.inf}
 _MOST_BYTES = 1 << 31
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class LawGrid:
     """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes it a
     function of V and omega.
@@ -113,7 +113,7 @@ class LawGrid:
         # u = kappa |V| with V over R/s, from V in m/s
         u = kappa / self.R * self.rows.u
         edges = kappa * self.rows.edges
-        rows = replace(
+        rows = dataclasses.replace(
             self.rows, mu=self.rows.mu / self.load, u=u, edges=edges, fields=fields, fastest=u[-1]
         )
         # the material is not known: alpha = 1 stands for it
@@ -174,7 +174,7 @@ def check_alpha(alpha: Any, ends: Any, source: Any) -> float:
     raise ParameterError("alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {source}")
 
 
-def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
+def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGrid | None:
     """Read the law of a grid from a netCDF file of any program.
 
     Parameters
@@ -247,7 +247,7 @@ def _no_law(path: Any, reason: Any) -> FileError:
     return FileError(path, f"is not a grid of a law, since {reason}")
 
 
-@contextmanager
+@contextlib.contextmanager
 def _told_of(path: Any) -> Iterator[None]:
     """Raise KeyError, ValueError and TypeError of the body of the ``with`` as FileError; a context
     manager.
@@ -472,10 +472,12 @@ def _law_of(table: Dataset) -> LawGrid:
     # 2 kappa times creepages, with kappa = 1
     edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
     if slips:  # then Q has a zero, the creepage of free rolling; else it is not used
-        from scipy.interpolate import CubicSpline
+        from scipy import interpolate
 
         # a row at a time: scipy leaves out a zero that the row before has too
-        zeros = [CubicSpline(delta, row).roots(extrapolate=False) for row in fields[..., 0]]
+        zeros = [
+            interpolate.CubicSpline(delta, row).roots(extrapolate=False) for row in fields[..., 0]
+        ]
         edges[:, 3] = [2.0 * zero[zero.size // 2] for zero in zeros]
     # the ends exactly, which rounding would miss
     t = (delta - middle) / half
@@ -517,7 +519,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     splines with four Taylor coefficients each about its left end, of which those from ``degree`` +
     1 on are 0.
     """
-    from scipy.interpolate import BSpline
+    from scipy import interpolate
 
     from ..kernels.law.spline_law import TERMS
 
@@ -525,7 +527,7 @@ def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     of = np.arange(edges.size - 1)[:, None]
     own = np.arange(degree + 1)
     basis = np.zeros((edges.size - 1, TERMS, TERMS))
-    every = BSpline(knots, np.eye(knots.size - degree - 1), degree)
+    every = interpolate.BSpline(knots, np.eye(knots.size - degree - 1), degree)
     for power in own:
         # in interval n only the basis splines n to n + degree are not 0
         basis[:, own, power] = every(edges[:-1], nu=power)[of, of + own] / math.factorial(power)

@@ -2,13 +2,13 @@
 bit.
 """
 
+import contextlib
 import json
+import os
 import tomllib
+import types
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import replace
-from os import PathLike
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -48,7 +48,7 @@ from ..materials import (
 )
 from .law_grid import check_alpha, load_grid
 from .law_rows import CoupledRows
-from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
+from .law_tables import LawAxis, LawTable, coupled_table, law_table, make_table
 from .row_layout import STEADY, CoverRows, steady_table
 
 #: attributes of a cover that its file states besides the series; the last one where the other body
@@ -67,7 +67,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     series, of bodies and of an alpha with T_ref = 1.
     Raises ParameterError for another type, an alpha out of [1, 1e12], a base beside anything but a
     Material, a Material or Pair with a thickness (its law depends on load and radius), many
-    materials, and as :func:`.law_table.law_table`.
+    materials, and as :func:`.law_tables.law_table`.
     """
     if base is not None and not isinstance(material, Material):
         raise described_error("base", "is given", "left out unless material is a Material")
@@ -117,7 +117,7 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> Data
         coefficients = np.concatenate([law.steady_coefficients[..., STEADY], creep], axis=-1)
         own = {"coefficients": coefficients, "limits": cover.limits}
     # make_dataset reads the numbers of a kind of file as attributes of one object
-    numbers = SimpleNamespace(**(vars(law) | own))
+    numbers = types.SimpleNamespace(**(vars(law) | own))
     return make_dataset(numbers, kind, title, errors, material="\n".join(texts))
 
 
@@ -133,7 +133,7 @@ def _title(table: LawTable) -> str:
     )
 
 
-def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
+def load_law(path: str | os.PathLike[str], alpha: float | None = None) -> Any:
     """Load the law of one material or pair from a file, for use wherever a Prony or Bodies is used.
 
     Parameters
@@ -264,7 +264,7 @@ def _coefficients(content: Content) -> Floats:
     return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(float))
 
 
-@contextmanager
+@contextlib.contextmanager
 def _refuse_incomplete(path: Any) -> Iterator[None]:
     """Raise FileError in place of the errors that parsing an incomplete file ends with; a context
     manager.

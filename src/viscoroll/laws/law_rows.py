@@ -1,7 +1,7 @@
 """Values of the law by the modes of a material, and rows of polynomials that are fitted to values.
 
 **Rows** are polynomials of one variable over octaves, which :class:`Rows` reads and fits.  The
-variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.law_table`), dimensionless.
+variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.law_tables`), dimensionless.
 
 Slopes are fitted and integrated, and one constant is added: value, slope and secant of a polynomial
 are then all accurate to rounding, where a polynomial fitted to values has lost three digits in its
@@ -241,13 +241,12 @@ def fit_end(
     Returns (limits, (k,), with the values at 0 in place of NaN; P + R ln y at the last of the
     points, (k,); values and derivatives with respect to ln y at the points, (2, k, m)).
     """
-    from numpy.polynomial.chebyshev import chebvander
 
     def basis(y: Any, degree: int, log_terms: int) -> Any:
         """Return the terms at points ``y``, (points,), real or complex, (points, terms): Chebyshev
         polynomials of 2 y - 1 up to ``degree``, then the first ``log_terms`` of them times ln y.
         """
-        terms = chebvander(2.0 * y - 1.0, degree)
+        terms = np.polynomial.chebyshev.chebvander(2.0 * y - 1.0, degree)
         return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
     def fit(values: Floats, at: Any, log_terms: int) -> Any:
@@ -486,7 +485,7 @@ class CoupledRows:
         Returns the slopes in the shape of ``values``, 0 in both limits; of graded nodes the slope
         at an end node is the difference of its value from that of the limit beside it.
         """
-        from scipy.interpolate import CubicSpline
+        from scipy import interpolate
 
         # 1: a condition on the first derivative; from an end node to its limit fields are linear in
         # u or 1/u, and the slope over ln u at the node is this difference
@@ -495,7 +494,9 @@ class CoupledRows:
         nodes = values[1:-1]
         found = np.zeros_like(values)
         found[1:-1] = (
-            CubicSpline(x, nodes, bc_type=ends)(x, 1) if self.graded else _slopes(x, nodes)
+            interpolate.CubicSpline(x, nodes, bc_type=ends)(x, 1)
+            if self.graded
+            else _slopes(x, nodes)
         )
         return found
 
@@ -517,7 +518,7 @@ class CoupledRows:
         fields: values at the nodes, (n + 2, m, fields).
         The derivatives are 0 at t = 0 and +-1 if the nodes are graded.
         """
-        from scipy.interpolate import CubicSpline
+        from scipy import interpolate
 
         if not self.graded:
             slopes = _slopes(self.t, fields, axis=1)
@@ -527,7 +528,9 @@ class CoupledRows:
         found = np.zeros_like(fields)
         # each side by itself: fields have a corner in the middle, which the grading of t makes flat
         for side in (slice(0, middle + 1), slice(middle, None)):
-            spline = CubicSpline(self.t[side], fields[:, side], axis=1, bc_type="clamped")
+            spline = interpolate.CubicSpline(
+                self.t[side], fields[:, side], axis=1, bc_type="clamped"
+            )
             found[:, side] = spline(self.t[side], 1)
         return found
 
@@ -541,9 +544,11 @@ def _slopes(x: Floats, values: Floats, axis: int = 0) -> Floats:
     """Return slopes at nodes ``x`` along an axis of ``values``, in their shape, of the not-a-knot
     spline, of lower degree for few nodes.
     """
-    from scipy.interpolate import make_interp_spline
+    from scipy import interpolate
 
-    return np.asarray(make_interp_spline(x, values, k=min(3, x.size - 1), axis=axis)(x, 1))
+    return np.asarray(
+        interpolate.make_interp_spline(x, values, k=min(3, x.size - 1), axis=axis)(x, 1)
+    )
 
 
 def _equal_step(x: Any) -> tuple[float, float]:

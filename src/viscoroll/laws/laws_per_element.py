@@ -7,10 +7,10 @@ reads a part of a row has it made if it is that of another element.  Such a reco
 thread.
 """
 
+import functools
 import math
 import threading
-from functools import lru_cache
-from types import SimpleNamespace
+import types
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..core import Floats, Integers, ParameterError
 from ..kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
 from ..materials import Bodies, Cover, Prony, lock_array
 from .cover_rows import cover_rows
-from .law_table import OCTAVES, make_table, tables_of_octave
+from .law_tables import OCTAVES, make_table, tables_of_octave
 from .row_layout import AxisRows, align_vector, allocate_rows, pack_axis, pack_materials
 
 #: laws of an octave of thickness, at Chebyshev nodes; of a rubber with three modes the error then
@@ -201,7 +201,7 @@ def _lazy_record(
     for name, value in fields.items():
         source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
     # the marks keep all arrays alive of which the kernels have the addresses
-    owner = SimpleNamespace(
+    owner = types.SimpleNamespace(
         __array_interface__=marks.__array_interface__, arrays=(source, fields, kept)
     )
     selector, maker = (
@@ -311,7 +311,7 @@ def _node_weights(x: Floats, count: int) -> Floats:
     return np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, count - 1) @ to_chebyshev(count)
 
 
-@lru_cache(maxsize=32)
+@functools.lru_cache(maxsize=32)
 def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
     """Return the laws at the nodes of an octave of thickness; the last 32 octaves are kept.
 

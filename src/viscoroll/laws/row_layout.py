@@ -206,8 +206,8 @@ def pack_record(law: Any) -> Any:
 
     In contrast to the records of :mod:`.laws_per_element`, whose rows kernels compute where they
     read them, it can be shared by threads.
-    law: :class:`.law_table.LawTable`; the column of N is not read, and of a cover, whose ``limits``
-        take their place, neither alpha nor ``fast_limit``.
+    law: :class:`.law_tables.LawTable`; the column of N is not read, and of a cover, whose
+        ``limits`` take their place, neither alpha nor ``fast_limit``.
     Returns a :class:`.law_record.Law` with read-only arrays.  ``N_rows`` is empty, as N
     is packed by :func:`pack_unsteady`; ``selector``, ``maker`` and ``source`` are 0, since no row
     is left to be made; ``cover_rows`` is None for half-spaces, ``table`` but for a table of the
@@ -427,7 +427,7 @@ def pack_axis(tables: list[Any]) -> AxisRows:
 
     The interpolation is by Chebyshev polynomials in s in [-1, 1], the place of alpha in its octave;
     the kernels are those of :mod:`.alpha_axis`.
-    tables: laws of standard linear solids (:class:`.law_table.LawTable`) at the 16 Chebyshev nodes
+    tables: laws of standard linear solids (:class:`.law_tables.LawTable`) at the 16 Chebyshev nodes
         of s, in the order of :func:`.interpolation.chebyshev`, with equal numbers of rows.
     Returns :class:`AxisRows`: ``numbers``, the terms of these polynomials, in groups of four;
     ``starts``, the index of the first group of each function or pair of each row; ``rows``, their
@@ -509,7 +509,6 @@ def _significant_terms(values: Floats) -> Floats:
     powers of t above the last Chebyshev polynomial that is kept are exactly 0; a coefficient that
     is the same at all nodes has that value as its term T_0, and 0 after it.
     """
-    from numpy.polynomial.chebyshev import poly2cheb
 
     count = values.shape[-1]
     ends = values @ np.array(
@@ -519,7 +518,10 @@ def _significant_terms(values: Floats) -> Floats:
     terms = np.einsum("jk,k...->j...", to_chebyshev(len(values)), values)
     # from powers to Chebyshev polynomials exactly: an inverse matrix would lose eight digits
     to_terms = np.array(
-        [np.pad(poly2cheb(unit), (0, count - 1 - k)) for k, unit in enumerate(np.eye(count))]
+        [
+            np.pad(np.polynomial.chebyshev.poly2cheb(unit), (0, count - 1 - k))
+            for k, unit in enumerate(np.eye(count))
+        ]
     )
     of_both = terms[:, 1:] @ to_terms
     allowed = np.full(values.shape[2:], _NEGLIGIBLE)

@@ -11,13 +11,13 @@ of its series; it is written and read by ``to_netcdf`` and ``from_netcdf`` of
 
 import hashlib
 import io
+import pathlib
 import shlex
 import sys
 import tomllib
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from importlib.resources import files
-from pathlib import Path
+from importlib import resources
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -87,7 +87,9 @@ class Kind(NamedTuple):
     error: str
 
 
-_TEXTS = tomllib.loads((files(__package__) / "file_variables.toml").read_text(encoding="utf-8"))
+_TEXTS = tomllib.loads(
+    (resources.files(__package__) / "file_variables.toml").read_text(encoding="utf-8")
+)
 #: kind of a law file -> its contents
 KINDS = {name: Kind(**about) for name, about in _TEXTS["laws"].items()}
 
@@ -422,7 +424,7 @@ def load_material(path: FilePath, make: Any) -> Any:
         raise FileError(
             path, f"has attribute schema = {about.get('schema')!r:.40}, not {_SCHEMA!r}; {_REWRITE}"
         )
-    if seal_matches(Path(path).read_bytes()) is None:
+    if seal_matches(pathlib.Path(path).read_bytes()) is None:
         raise FileError(
             path,
             "is cut, or was written by another program than viscoroll (no checksum at its end); "

@@ -8,10 +8,10 @@ multiplies all moduli in the same way.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -238,12 +238,12 @@ class ShiftFactors:
             return self.a_T[0]
         return math.exp(self._ln(found))
 
-    @cached_property
+    @functools.cached_property
     def _ln(self) -> Any:
         """The interpolated ln a_T, a function of the temperature."""
-        from scipy.interpolate import PchipInterpolator
+        from scipy import interpolate
 
-        return PchipInterpolator(self.temperature, np.log(self.a_T))
+        return interpolate.PchipInterpolator(self.temperature, np.log(self.a_T))
 
     def wlf(self) -> WLF:
         """Fit the law of Williams, Landel and Ferry to the factors, so that other temperatures need
@@ -275,7 +275,7 @@ class ShiftFactors:
         >>> round(law.C1, 4), round(law.C2, 3)
         (8.86, 101.6)
         """
-        from scipy.optimize import least_squares
+        from scipy import optimize
 
         above, logs = self._points(3)
         # C2 must exceed it, so that C2 + T - T0 is > 0 at the lowest temperature
@@ -294,7 +294,7 @@ class ShiftFactors:
         low, high = np.log(_GAP)
         # C1/C2 is the slope of -log10 a_T at T0, here the mean slope over the temperatures
         start = math.log((logs[0] - logs[-1]) / (above[-1] - above[0])), 0.5 * (low + high)
-        found = least_squares(
+        found = optimize.least_squares(
             errors, start, bounds=([-np.inf, low], [np.inf, high]), xtol=1e-12, ftol=1e-12
         )
         C1, C2 = constants(found.x)

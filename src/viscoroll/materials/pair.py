@@ -6,8 +6,8 @@ beta_D is 0 at all times.  Layers and half-spaces of one Poisson's ratio differ 
 :func:`layer_excess`.
 """
 
+import dataclasses
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
@@ -55,7 +55,7 @@ class Solid(NamedTuple):
         return self.E / (2.0 * (1.0 + self.nu))
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Pair:
     """Cylinder and half-space; with a :class:`Solid` only the law and the moduli are available.
 

@@ -2,11 +2,11 @@
 relaxation modulus over time (:func:`read_relaxation`).
 """
 
+import dataclasses
+import itertools
+import pathlib
 import re
 from collections import defaultdict
-from dataclasses import dataclass
-from itertools import product
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -33,7 +33,7 @@ GivenUnits: TypeAlias = tuple[str, str] | ByQuantity | None
 # --- Relaxation modulus over time from a text file ---
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class RelaxationModulus(ModuliRecord):
     """Relaxation modulus over time, as :func:`viscoroll.read_relaxation` reads it from a file.
 
@@ -185,7 +185,7 @@ def _origin(path: Any, taken: list[Column]) -> dict[str, Any]:
     quantity -> unit in the file.
     """
     return {
-        "source": Path(path).name.encode(errors="replace").decode(),
+        "source": pathlib.Path(path).name.encode(errors="replace").decode(),
         "columns": {column.name: column.heading for column in taken},
         "units": {column.name: column.unit for column in taken},
     }
@@ -401,7 +401,7 @@ def _choose_columns(source: Understood) -> tuple[str, tuple[str, str], dict[str,
             "magnitude), all in tension or all in shear"
         )
         # without compliances first, then without moduli
-        for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
+        for mode, excluded in itertools.product(modes or [""], ("1/Pa", "Pa")):
             columns = defaultdict(list)
             unused = {}
             for column in found:

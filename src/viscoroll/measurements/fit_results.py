@@ -4,14 +4,19 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import MISFIT_LIMIT, Assumption, assess_measured_band, transit_frequency
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import (
+    MISFIT_LIMIT,
+    Assumption,
+    assess_measured_band,
+    contact,
+    transit_frequency,
+)
 from ..core import (
     ArrayLike,
     Booleans,
@@ -154,7 +159,7 @@ class SeriesFit(Result):
         """
         return has_plateau(self.data, self.E)
 
-    @cached_property
+    @functools.cached_property
     def admissible(self) -> Any:
         """Spectra that meet the data as well as this fit, with the smallest and the largest M at
         each speed.

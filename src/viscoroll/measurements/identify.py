@@ -5,9 +5,9 @@ and [[data]].
 """
 
 import dataclasses
+import operator
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from operator import attrgetter
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -270,7 +270,7 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
     return minima
 
 
-_chi2 = attrgetter("chi2")
+_chi2 = operator.attrgetter("chi2")
 
 
 def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
@@ -284,11 +284,11 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
     seed : seed of the hypercube, >= 0.
     Yields coordinates of a start, (unknowns,), ``count`` - 1 times, if another unknown acts.
     """
-    from scipy.stats import qmc
+    from scipy import stats
 
     free = [i for i in problem.active if problem.unknowns[i].kind not in OF_RECORDS]
     if count > 1 and free:
-        cube = qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed))
+        cube = stats.qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed))
         for point in cube.random(count - 1):
             u = problem.start.copy()
             u[free] = problem.low[free] + point * (problem.high - problem.low)[free]
@@ -373,7 +373,7 @@ class _Section(msgspec.Struct):
     units: dict[str, str] = {}
 
 
-def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
+def read_measurements(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Read the arguments of :func:`identify` from a TOML file and the files of data that it names.
 
     Parameters

@@ -2,12 +2,12 @@
 minima of chi2.
 """
 
+import contextlib
+import dataclasses
+import functools
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -117,7 +117,7 @@ def _largest(values: Floats) -> float:
     return float(np.abs(values).max()) or 1.0
 
 
-@dataclass(eq=False)
+@dataclasses.dataclass(eq=False)
 class Problem:
     """The least squares of an identification: chi2 over the coordinates of the unknowns.
 
@@ -163,7 +163,7 @@ class Problem:
         ).T
         self._mean, self._sd = np.array([unknown[5:] for unknown in self.unknowns]).T
         self._has_prior = np.isfinite(self._sd)
-        self._model = lru_cache(16)(self._predict_all)
+        self._model = functools.lru_cache(16)(self._predict_all)
         self.columns = []
         y = []
         sigma = []
@@ -245,7 +245,7 @@ class Problem:
         with (
             np.errstate(all="ignore"),
             warnings.catch_warnings(action="ignore"),
-            suppress(ViscorollError, ArithmeticError),
+            contextlib.suppress(ViscorollError, ArithmeticError),
         ):
             seen = {
                 name: self.predicted(record, np.frombuffer(u), name)
@@ -360,7 +360,7 @@ class Problem:
         that are not active stay at u, or at the end of their range nearest to it; where no
         coordinate is free all do.
         """
-        from scipy.optimize import least_squares
+        from scipy import optimize
 
         powers = np.zeros_like(u) if fixed is None else fixed
         single = np.count_nonzero(powers) == 1
@@ -389,7 +389,7 @@ class Problem:
             return np.vstack([self.slopes(self.residuals, at(v), free, _ONE_SIDED_STEP), rule])
 
         if free:
-            found = least_squares(
+            found = optimize.least_squares(
                 residuals,
                 whole[free],
                 jacobian,

@@ -2,8 +2,6 @@
 (:func:`sets_of`), the reference temperature, and the factors a_T of the shifts (:class:`Shifts`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -386,7 +384,7 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 
 
 def _shifts_by_overlap(
-    curves: list[_LogCurve], temperatures: list[float]
+    curves: "list[_LogCurve]", temperatures: list[float]
 ) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 
@@ -446,7 +444,7 @@ class _LogCurve:
         on : "storage" or "both": the moduli that are kept.
         Raises ParameterError for a single frequency.
         """
-        from scipy.interpolate import CubicSpline, PchipInterpolator
+        from scipy import interpolate
 
         self.x, which = np.unique(np.log(curve.omega), return_inverse=True)
         count = np.bincount(which)
@@ -461,7 +459,7 @@ class _LogCurve:
                 "has a single value at one temperature",
                 "two frequencies or more at each temperature",
             )
-        kind = CubicSpline if self.x.size > 3 else PchipInterpolator
+        kind = interpolate.CubicSpline if self.x.size > 3 else interpolate.PchipInterpolator
         self.interpolate = kind(self.x, self.y)
 
 
@@ -500,7 +498,7 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     nearest steps on either side at which the mismatch of a modulus is more than 0.01 above that at
     the best one, or the ends of the search.
     """
-    from scipy.optimize import minimize_scalar
+    from scipy import optimize
 
     def cost(squares: Floats) -> Floats:
         """Return the log of the product of mismatches, from mean ``squares``, (..., moduli)."""
@@ -517,7 +515,7 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
         return _Alignment(math.nan, math.nan, math.nan, at_end=False, disagree=False)
     best = int(np.argmin(cost(squares)))
     around = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
-    step = minimize_scalar(
+    step = optimize.minimize_scalar(
         lambda step: cost(_mismatch(step, cold, warm)),
         bounds=around,
         options={"xatol": 1e-9},

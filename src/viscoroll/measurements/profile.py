@@ -3,9 +3,9 @@ determine.
 """
 
 import math
+import operator
 from collections.abc import Iterable, Iterator
 from functools import cache
-from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -458,7 +458,7 @@ class ProfileWalk:
             ends=ends,
             limited_by=limits,
             pieces=pieces,
-            best=min(self.visited, key=attrgetter("chi2")),
+            best=min(self.visited, key=operator.attrgetter("chi2")),
             within=within,
         )
 
@@ -476,7 +476,7 @@ class ProfileWalk:
         Returns (the signed distance, or None if chi2 is still below the bound at ``reach``; of the
         minima found the :class:`Minimum` nearest to that distance, or that at ``reach``).
         """
-        from scipy.optimize import brentq
+        from scipy import optimize
 
         goal = math.sqrt(self.delta_chi2)
         d = self.distance(start.u)
@@ -514,7 +514,7 @@ class ProfileWalk:
             # three times and at least 0.3 times this one
             rise = max(f - fa, -0.35 * f)
             step = min(max(-1.05 * f / rise, 0.3) * step, _LONGEST_STEP)
-        end = brentq(excess, a, d, xtol=_CLOSE * min(self.sd, 1.0))
+        end = optimize.brentq(excess, a, d, xtol=_CLOSE * min(self.sd, 1.0))
         return end, found[min(found, key=lambda d: abs(d - end))]
 
     def search_beyond(self, d: float, reach: float) -> list[Minimum]:

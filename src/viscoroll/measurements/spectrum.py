@@ -21,15 +21,14 @@ Speeds, moments and kappa are those of a :class:`viscoroll.Scene`: V in units of
 by P R.
 """
 
+import itertools
 import math
 from collections.abc import Callable
-from itertools import product
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..contact_mechanics import transit_speeds
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import contact, transit_speeds
 from ..core import Floats, described_error
 from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Measured, Prony
 from ..rollers import Scene
@@ -80,10 +79,10 @@ class LeastSquares:
         row, value : coefficients, (1 + modes,), and right-hand side of a further residual, if any.
         Raises RuntimeError, from SciPy, where the iteration does not end in 100 (1 + modes) steps.
         """
-        from scipy.optimize import nnls
+        from scipy import optimize
 
         left = np.vstack([self.left, *row])
-        return nnls(left, np.append(self.right, value), maxiter=100 * self.size.size)[0]
+        return optimize.nnls(left, np.append(self.right, value), maxiter=100 * self.size.size)[0]
 
     def cost(self, unknowns: Floats) -> float:
         """Return the sum of the squared residuals, dimensionless, without that of a further row."""
@@ -338,7 +337,7 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, E
     """
     starts = []
     low, high = data.band
-    for margin, density in product(MARGINS, DENSITIES):
+    for margin, density in itertools.product(MARGINS, DENSITIES):
         # - 0.1: the least margin is the last one tried
         for slow in np.arange(margin, _LEAST_MARGIN - 0.1, -0.25):
             ends = max(10.0**-margin / high, data.shortest), 10.0**slow / low
@@ -527,12 +526,12 @@ def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Float
     rate : transit frequency, 1/s.
     Returns them in the inverse of the unit of the unknowns, (n,).
     """
-    from scipy.special import j1
+    from scipy import special
 
     z = 2.0j * rate * _WAVES[:, None] * problem.tau
     parts = np.concatenate([np.ones((_WAVES.size, 1)), z / (1.0 + z)], axis=1) / problem.size
     modulus = problem.floor + parts @ best
-    weight = j1(_WAVES) ** 2 / _WAVES  # in equal steps of ln u
+    weight = special.j1(_WAVES) ** 2 / _WAVES  # in equal steps of ln u
     # M is proportional to the sum of -Im(1/modulus), of which an unknown changes Im(part/modulus^2)
     return weight @ (parts / modulus[:, None] ** 2).imag / -(weight @ (1.0 / modulus).imag)
 

@@ -3,10 +3,10 @@
 storage, loss, tan delta and magnitude, with which a third is compared.
 """
 
+import bisect
+import collections
 import math
 import re
-from bisect import bisect
-from collections import defaultdict
 from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
@@ -465,7 +465,7 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     """
     numbers = [row.number for row in table.rows]
     commas = table.decimal != "," and "," in table.rows[0].text
-    lines: dict[int, dict[str, float | None]] = defaultdict(dict)
+    lines: dict[int, dict[str, float | None]] = collections.defaultdict(dict)
     for n, text in table.titles.items():
         found = _IN_DEGREES.findall(text) or _NAMED.findall(text)
         if found and n < numbers[-1]:
@@ -473,7 +473,7 @@ def temperatures_of_lines(table: Table) -> Floats | None:
             # the line without its numbers, by which a line of the preamble is known as one of them
             wording = re.sub(r"[\d.,+-]", "", text)
             # by the index of the first row below the line
-            lines[bisect(numbers, n)][wording] = values.pop() if len(values) == 1 else None
+            lines[bisect.bisect(numbers, n)][wording] = values.pop() if len(values) == 1 else None
     if not lines.keys() - {0}:
         return None
     starts = sorted({*lines, *map(numbers.index, table.starts)})

@@ -2,15 +2,15 @@
 or texts, and a heading of a column as its name, its unit and the base of its logarithms.
 """
 
+import collections
 import csv
 import math
+import pathlib
 import re
 import tomllib
-from collections import Counter
 from contextlib import suppress
 from decimal import Decimal
-from importlib.resources import files
-from pathlib import Path
+from importlib import resources
 from typing import NamedTuple
 
 import numpy as np
@@ -186,7 +186,7 @@ def read_lines(path: FilePath, encoding: str | None) -> list[str]:
     not know.
     """
     with as_file_error(path, "cannot be read"):
-        raw = Path(path).read_bytes()
+        raw = pathlib.Path(path).read_bytes()
     if raw.startswith(_WORKBOOKS):
         raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
     shown = [name for first, name in _ENCODINGS.items() if re.match(first, raw)]
@@ -265,7 +265,7 @@ def separator_of(text: list[str], decimal: str | None) -> str:
     """
     # separator -> number of cells of a row -> how many rows have as many
     widths = {
-        separator: Counter(
+        separator: collections.Counter(
             len(line.cells)
             for line in cut_lines(text[:2000], separator)
             if line.numeric and len(line.cells) > 1
@@ -300,7 +300,7 @@ _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
 _POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!\d)[)}]?")
 #: words of headings in seven languages, the quantities that they mean, and spellings of units
-DATA = tomllib.loads((files(__package__) / "headings.toml").read_text(encoding="utf-8"))
+DATA = tomllib.loads((resources.files(__package__) / "headings.toml").read_text(encoding="utf-8"))
 #: unit in small letters and without blanks, degrees and points -> unit of pint
 _SPELLINGS = {
     spelling: unit for unit, spellings in DATA["units"].items() for spelling in spellings.split()

@@ -4,9 +4,9 @@
 """
 
 import re
+import statistics
 from collections.abc import Callable, Collection
 from itertools import pairwise
-from statistics import mode
 from typing import Any, NamedTuple
 
 from ..core import FileError, FilePath, ParameterError, is_unit, suggestion
@@ -178,7 +178,7 @@ def read_table(
         path=path,
         lines=lines,
         separator=separator,
-        width=mode(widths),
+        width=statistics.mode(widths),
         cut=f"separated by {SEPARATORS[separator]}",
         is_heading_line=is_heading_line,
         is_title=is_title,

@@ -5,10 +5,10 @@ A material's modes count from its longest time; names of the half-space begin wi
 of a record end with its name, as V0:run.
 """
 
+import dataclasses
+import functools
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -276,10 +276,10 @@ def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) ->
         changes |= {"prony": _series(modes[:count], modes[count:]), "measured": None}
     elif body.measured is not None:
         changes["measured"] = body.measured.shifted(changes["T_ref"] / body.T_ref)
-    return replace(body, **changes)
+    return dataclasses.replace(body, **changes)
 
 
-@lru_cache(maxsize=256)
+@functools.lru_cache(maxsize=256)
 def _series(strengths: tuple[float, ...], times: tuple[float, ...]) -> Prony:
     """Return a series, the same object for the same values, so that its table of the law is made
     once.

@@ -1,7 +1,8 @@
 """What other rooms take from this one, a line each, for type checkers, and for ``__init__.py``."""
 
-from .ensemble import FIELDS as FIELDS
-from .ensemble import Ensemble as Ensemble
+from .ensembles import FIELDS as FIELDS
+from .ensembles import Ensemble as Ensemble
+from .ensembles import ensemble as ensemble
 from .many_motions import FLOW_PAYS as FLOW_PAYS
 from .motion_arguments import Drive as Drive
 from .motion_arguments import output_times as output_times

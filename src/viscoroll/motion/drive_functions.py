@@ -5,12 +5,11 @@ T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref
 material.
 """
 
-from dataclasses import dataclass, replace
+import dataclasses
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder
 
 from ..core import (
     Feedback,
@@ -67,7 +66,7 @@ _ROUNDING_OF_JUMP = 1e-12
 _INSTANT = 1e-280
 
 
-@dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False)
 class DriveFunctions:
     """The functions of time that drive motions, dimensionless, each the same for all motions or one
     for each.
@@ -174,7 +173,7 @@ class DriveFunctions:
         """
         some = self
         if self.counts[0] > 1:
-            some = replace(
+            some = dataclasses.replace(
                 self, functions={name: f.take(index) for name, f in self.functions.items()}
             )
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
@@ -357,7 +356,7 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
             when,
             motion=n,
         )
-    terms: Any = np.ascontiguousarray(polyder(speed.terms, axis=-1))
+    terms: Any = np.ascontiguousarray(np.polynomial.polynomial.polyder(speed.terms, axis=-1))
     terms *= _dx_dt(lengths)[..., None]
     return speed._replace(terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE))
 

@@ -19,15 +19,12 @@ Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined t
 left and one to the right, which meet in it.  A jump is located between two neighbouring doubles.
 """
 
-from __future__ import annotations
-
+import dataclasses
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 
 from ..core import Floats, NDArray, Schedule, check_array, require_time_argument, shape_error
@@ -67,7 +64,7 @@ _POINTS = -np.cos(np.pi * np.arange(2 * TERMS - 1) / (2 * TERMS - 2))
 _POINTS[TERMS - 1] = 0.0
 #: Matrix from values at the nodes to Chebyshev coefficients, by the orthogonality of the
 #: polynomials at the nodes.
-_TO_SERIES = chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
+_TO_SERIES = np.polynomial.chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
 _TO_SERIES[[0, -1]] *= 0.5
 _TO_SERIES[:, [0, -1]] *= 0.5
 #: Matrix from Chebyshev coefficients to those of powers.
@@ -105,7 +102,7 @@ class Piece(NamedTuple):
         )
 
 
-@dataclass
+@dataclasses.dataclass
 class _Sampled:
     """A callable with its samples, evenly spread over the whole time; dimensionless, times in
     T_ref.
@@ -276,7 +273,7 @@ def fit_callable(
     rtol: float,
     low: float,
     resolve: float | None,
-) -> Piecewise:
+) -> "Piecewise":
     """Fit a callable by piecewise polynomials, so that the integrator never calls it.
 
     name: name of the argument, for errors.
@@ -451,7 +448,7 @@ class Piecewise(NamedTuple):
     error: float = 0.0
     corners: int = 0
 
-    def take(self, index: Any) -> Piecewise:
+    def take(self, index: Any) -> "Piecewise":
         """Return the function of some of the motions; what is the same for all motions stays.
 
         index: index of numpy, a slice or a vector of integers, that selects the motions.

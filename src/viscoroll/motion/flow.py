@@ -12,12 +12,10 @@ alpha, of a series one near its slow time (``Parameters.in_own_time``).  Speeds 
 and gamma is P T^2/(m R).
 """
 
-from __future__ import annotations
-
+import functools
 import hashlib
 import math
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,8 +27,7 @@ from ..kernels.motion import flow_layout
 from ..kernels.numerics.cache_folder import cache_root
 from ..kernels.numerics.jit import sources_digest
 from ..kernels.records import Flow, Motions
-from ..laws import interleave_pairs
-from ..laws.law_table import law_table
+from ..laws import interleave_pairs, law_table
 from ..materials import Prony
 from .flow_tables import NODES, SPEEDS, fill_layers, fill_manifold
 from .motion_problem import OUT_OF_RANGE, STOPS, FlowProblem, NoFlowMap, integrate_motions
@@ -88,7 +85,7 @@ def folder() -> Path:
     return cache_root() / f"flow-{_digest()}"
 
 
-@cache
+@functools.cache
 def _digest() -> str:
     """Return a digest of all sources on which the bits of a map depend: kernels, materials and
     motions.
@@ -233,7 +230,7 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
     return _map(*map_key(scene, speed), threads)
 
 
-@lru_cache(_MAPS_IN_MEMORY)
+@functools.lru_cache(_MAPS_IN_MEMORY)
 def _map(parameters: MapParameters, octave: int, threads: int | None) -> FlowMap:
     """Return a flow map from memory, from disk, or built and written to disk; the last four stay in
     memory.
@@ -409,7 +406,7 @@ def _motion_errors(new_map: FlowMap, start: Floats) -> Floats:
     V0, omega0 = start
     decay = 1.0 / new_map.slow_rate
 
-    def flow(times: NDArray) -> FlowResult:
+    def flow(times: NDArray) -> "FlowResult":
         """Look the motion up in the new map with gamma = 1.
 
         times : output times, (times,), dimensionless, ascending.
@@ -487,7 +484,7 @@ class FlowResult(NamedTuple):
     switches: Integers
 
     @classmethod
-    def empty(cls, rows: int, count: int, times: int) -> FlowResult:
+    def empty(cls, rows: int, count: int, times: int) -> "FlowResult":
         """Return arrays for motions of which none is computed yet: status -1, 0 switches, all else
         undefined.
 
@@ -537,7 +534,7 @@ def look_up_ensemble(
         slow_rate=chosen.slow_rate,
     )
     run_blocks(
-        partial(look_up_motions, flow, motions, result),
+        functools.partial(look_up_motions, flow, motions, result),
         count,
         _BLOCK,
         threads=threads,

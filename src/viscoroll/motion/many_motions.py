@@ -22,8 +22,7 @@ from ..core import (
     run_blocks,
 )
 from ..kernels.records import Motions
-from ..laws import record_of_alphas, record_of_materials
-from ..laws.law_table import law_table
+from ..laws import law_table, record_of_alphas, record_of_materials
 from ..materials import Bodies
 from .flow import FlowResult, flow_map, look_up_ensemble
 from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES, dimensionless_error

@@ -2,9 +2,7 @@
 gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 """
 
-from __future__ import annotations
-
-from functools import partial
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,14 +29,9 @@ from ..core import (
 
 # --- Checks of arguments that one motion and an ensemble share ---
 
-#: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no
-#: longer proportional.
-RTOL_RANGE = {"low": 1e-12, "high": 1e-2}
 #: Smallest and largest start speed, dimensionless: beyond them intermediate results leave the range
 #: of doubles.
 SPEED_RANGE = (1e-300, 1e100)
-#: Largest step limit: a motion takes some hundreds of steps.
-MOST_STEPS = 10_000_000
 
 
 def output_times(t: ArrayLike, units: Units = "1") -> Floats:
@@ -61,31 +54,6 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
         found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at index {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
     return times
-
-
-def require_single(**arguments: Any) -> None:
-    """Raise ParameterError for an array where ``roll`` takes one number.
-
-    arguments: name of an argument of ``roll`` -> its value.  Numbers, arrays of shape () and None
-    pass, and so does what is no array, which is checked elsewhere; a nested list of unequal lengths
-    counts as a vector of lists.
-    The error is that of the first argument with axes, also of shape (1,); without one None is
-    returned.
-    """
-    for name, value in arguments.items():
-        if type(value) is float:
-            continue
-        try:
-            shape = tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
-        except (TypeError, ValueError):
-            shape = ()
-        if shape:
-            raise ParameterError(
-                name,
-                shape,
-                "a single number",
-                f"roll computes one motion, but {name} has shape {shape}: use ensemble",
-            )
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
@@ -158,7 +126,7 @@ def dimensionless_error(
     told = (f"{digits_beside(x, *values)} {unit}".rstrip() for x in values)
     sentence = text.replace(":", of_many, 1).format(*told)
     error = ParameterError(name, values[0], sentence.partition(": must be ")[2], sentence)
-    error.dimensionless = partial(
+    error.dimensionless = functools.partial(
         dimensionless_error, name, text, quantity, *numbers, motion=motion
     )
     return error
@@ -234,7 +202,7 @@ class Drive(NamedTuple):
         """Whether anything is given; every call of roll asks, so no dict is made."""
         return {*map(type, self)} != {type(None)}
 
-    def without_zeros(self) -> Drive:
+    def without_zeros(self) -> "Drive":
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times;
         prescribed speeds of 0 stay.
 

@@ -4,7 +4,7 @@ with names, units and provenance.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import dataclasses
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,7 +42,7 @@ class Switch(NamedTuple):
     regime: str
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class RollResult(Result):
     """The data that :class:`Motion` and :class:`Ensemble` have in common: the roller, its drive,
     and the rows over the output times.

@@ -16,12 +16,12 @@ from ..contact_mechanics import (
     FreeRolling,
     Parameters,
     Roller,
+    contact,
     refuse_beyond,
     refuse_cover,
     resolve_model,
     warn_of_start,
 )
-from ..contact_mechanics.contact import contact
 from ..core import (
     Floats,
     Integers,
@@ -36,19 +36,21 @@ from ..core import (
     make_dimensionless,
     run_blocks,
 )
-from ..laws.law_table import law_table
+from ..laws import law_table
 from .drive_functions import UNDRIVEN, DriveFunctions, KernelDrive, prepare_drive
 from .motion_arguments import (
     LOSSES,
-    MOST_STEPS,
     ROWS,
-    RTOL_RANGE,
     STATES,
     Drive,
-    require_single,
     with_scales,
 )
 
+#: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no
+#: longer proportional.
+RTOL_RANGE = {"low": 1e-12, "high": 1e-2}
+#: Largest step limit: a motion takes some hundreds of steps.
+MOST_STEPS = 10_000_000
 #: Indices of all rows of the kernel's output.
 _ALL_ROWS = np.arange(len(ROWS))
 #: Indices of the rows of free motions.
@@ -121,6 +123,31 @@ class MotionProblem(NamedTuple):
         as the caller gave them; None for a prescribed one.
         """
         warn_of_start(self.roller, self.scene, start, self.V0, self.omega0, self.driven)
+
+
+def require_single(**arguments: Any) -> None:
+    """Raise ParameterError for an array where ``roll`` takes one number.
+
+    arguments: name of an argument of ``roll`` -> its value.  Numbers, arrays of shape () and None
+    pass, and so does what is no array, which is checked elsewhere; a nested list of unequal lengths
+    counts as a vector of lists.
+    The error is that of the first argument with axes, also of shape (1,); without one None is
+    returned.
+    """
+    for name, value in arguments.items():
+        if type(value) is float:
+            continue
+        try:
+            shape = tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
+        except (TypeError, ValueError):
+            shape = ()
+        if shape:
+            raise ParameterError(
+                name,
+                shape,
+                "a single number",
+                f"roll computes one motion, but {name} has shape {shape}: use ensemble",
+            )
 
 
 def make_problem(

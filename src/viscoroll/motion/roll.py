@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..contact_mechanics import Roller, Validity, assess_heat, scale_of, warn_of_speeds
-from ..contact_mechanics.contact import contact
-from ..contact_mechanics.validity import validity
+from ..contact_mechanics import (
+    Roller,
+    Validity,
+    assess_heat,
+    contact,
+    scale_of,
+    validity,
+    warn_of_speeds,
+)
 from ..core import (
     ArrayLike,
     Dataset,
@@ -44,7 +50,7 @@ _MORE_STEPS = 1000
 REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Motion(RollResult):
     """One motion, in the units of its roller: dimensionless for a scene, for a cylinder SI units
     per m of length.

@@ -13,8 +13,6 @@ quantile of blocks lies between two values that are known to 2^-8 each
 (``tests/runs/test_runs.py``); that of an ensemble in memory is exact.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
@@ -57,7 +55,7 @@ class Histogram(msgspec.Struct):
 
     @classmethod
     @np.errstate(over="ignore")  # a sum of squares beyond the doubles is infinite
-    def of(cls, values: Floats, exact: bool = False) -> Histogram:
+    def of(cls, values: Floats, exact: bool = False) -> "Histogram":
         """Make the histogram of those values that are finite.
 
         values: float64, (n,), in the unit of the quantity; those that are not finite are left out,
@@ -78,7 +76,7 @@ class Histogram(msgspec.Struct):
         moments = mean, float(np.square(kept - mean).sum()), float(kept.min()), float(kept.max())
         return cls(bins, counts, kept.size, *moments, kept if exact else None)
 
-    def merge(self, other: Histogram) -> Histogram:
+    def merge(self, other: "Histogram") -> "Histogram":
         """Return the histogram of the values of two histograms.
 
         Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).

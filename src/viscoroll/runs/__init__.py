@@ -12,21 +12,15 @@ store.  :func:`estimate` states the time, memory and disk space that a run takes
 of it.
 """
 
+import dataclasses
 import logging
 import re
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    CancelledError,
-    ThreadPoolExecutor,
-    as_completed,
-    wait,
-)
+from concurrent import futures
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
@@ -201,10 +195,10 @@ def _evaluate_missing(
             checked = stop
             running.add(submit(block))
             if len(running) >= 2 * workers:  # the task that each works on, and the next
-                done, running = wait(running, return_when=FIRST_COMPLETED)
+                done, running = futures.wait(running, return_when=futures.FIRST_COMPLETED)
                 yield from (future.result() for future in done)
         advance(store.run.settings.n - checked, on_disk=True)
-        yield from (future.result() for future in as_completed(running))
+        yield from (future.result() for future in futures.as_completed(running))
     finally:
         for future in running:
             future.cancel()
@@ -240,7 +234,9 @@ def _executor(
     if cluster is None:
         interrupted = threading.Event()
         workers = thread_count(threads)
-        pool: Any = ThreadPoolExecutor(workers, initializer=cancel_with, initargs=(interrupted,))
+        pool: Any = futures.ThreadPoolExecutor(
+            workers, initializer=cancel_with, initargs=(interrupted,)
+        )
         try:
             yield partial(pool.submit, store.evaluate), workers
         except BaseException:
@@ -271,7 +267,12 @@ def _executor(
                 yield partial(pool.submit, Store.evaluate, shared), workers
     except ViscorollError:
         raise
-    except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
+    except (
+        OSError,
+        TimeoutError,
+        futures.CancelledError,
+        distributed.scheduler.KilledWorker,
+    ) as error:
         text = " ".join((str(error) or type(error).__name__).split())
         problem = f"the connection to the cluster was lost ({text:.200})"
         raise FileError(cluster, f"{problem}: the same call or command resumes the run") from error
@@ -340,7 +341,7 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Estimate:
     """Time, memory and disk space that a run takes.
 

@@ -3,9 +3,9 @@ result that prints itself and gives datasets, tables and figures (:func:`open_ru
 one netCDF-4 file (:func:`export_netcdf`).
 """
 
+import dataclasses
 import math
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,7 @@ from .run_store import MOTIONS, problems
 # --- Check of a results store against its records ---
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Verdict:
     """Result of :func:`verify`; ``str`` states it in words.
 

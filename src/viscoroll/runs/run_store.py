@@ -12,19 +12,22 @@ A block is a range of the motions of a run: :func:`block_inputs` draws its rando
 :func:`roll_block` makes the motions.
 """
 
+import contextlib
+import dataclasses
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import (
+    contact,
+    transit_frequency,
+    warn_of_contact,
+    warn_of_unmeasured_starts,
+)
 from ..core import FileError, Named, NDArray, as_file_error, shape_error, write_bytes
-from ..motion import Ensemble, Summary, merge_summaries, summarise, summary_dataset
-from ..motion.ensemble import ensemble
+from ..motion import Ensemble, Summary, ensemble, merge_summaries, summarise, summary_dataset
 from ..sampling import points
 from .run_records import (
     ADVICE,
@@ -223,7 +226,7 @@ def _fraction_outside(run: Run) -> float:
 MOTIONS = "motions"
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Store:
     """Results of a run in a folder; a part is the start (metadata), a block of motions, or the end
     (summaries).
@@ -371,7 +374,7 @@ class Store:
         writing.
         """
         for path in self.root.rglob(".*.tmp-*"):
-            with suppress(OSError):
+            with contextlib.suppress(OSError):
                 path.unlink()
 
     def _summaries(self) -> Iterator[Summary]:
@@ -492,7 +495,7 @@ def _record_path(root: Path, name: str | int) -> Path:
     return root / RECORDS / (name if isinstance(name, str) else f"{name:09d}")
 
 
-@contextmanager
+@contextlib.contextmanager
 def locked(root: Path) -> Iterator[None]:
     """Keep other processes from writing to a store; a context manager, which creates the folder.
 

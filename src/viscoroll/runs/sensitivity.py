@@ -275,7 +275,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     half-widths of their 95 % intervals, the total indices and their half-widths; ""), or, where a
     value is not finite or the values are equal, (such an array of NaN; the reason, in words).
     """
-    from scipy.special import ndtri
+    from scipy import special
 
     found = np.full((len(_INDICES), len(values) - 2), np.nan)
     if missing := np.count_nonzero(~np.isfinite(values)):
@@ -287,7 +287,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     resampled = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
     found[0::2] = _estimated(values)
     # rows: S1, its half-width, ST, its half-width; that of a normal distribution is 1.96 deviations
-    found[1::2] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(resampled, axis=0, ddof=1)
+    found[1::2] = special.ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(resampled, axis=0, ddof=1)
     return found, ""
 
 

@@ -7,9 +7,9 @@ row that is drawn.  :class:`Inputs` gives the values of all inputs at such point
 of the run file with these values.
 """
 
+import contextlib
 import math
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -161,13 +161,13 @@ class Inputs:
         """
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
-            from scipy.special import ndtr, ndtri
+            from scipy import special
 
-            normal = [ndtri(rows[name]) for name in self.correlated]
+            normal = [special.ndtri(rows[name]) for name in self.correlated]
             # a sum in a fixed order, so that bits do not depend on the number of points
             mixed = sum(part[:, None] * row for part, row in zip(self.mixing.T, normal))
             # 0 or 1, which ndtr may round to, would be infinite quantiles
-            rows |= zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST))
+            rows |= zip(self.correlated, np.clip(special.ndtr(mixed), SMALLEST, LARGEST))
         values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
         for file, columns in self.joint.items():
             size = next(iter(columns.values())).size
@@ -240,7 +240,10 @@ class Inputs:
         """
         content = _fill_in(self.content, values)
         if self.rolls:
-            with suppress(TypeError, KeyError, AttributeError), np.errstate(all="ignore"):
+            with (
+                contextlib.suppress(TypeError, KeyError, AttributeError),
+                np.errstate(all="ignore"),
+            ):
                 R = content["cylinder"]["R"] if "cylinder" in content else 1.0
                 omega0 = np.divide(content["start"]["V0"], R)
                 content["start"]["omega0"] = omega0 if omega0.ndim else omega0.item()

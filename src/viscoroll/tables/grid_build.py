@@ -8,18 +8,17 @@ moment, and its parts M_half_space and M_cylinder; delta_star, creepage at which
 delta_0, creepage without creep force; zeta, time in which a point passes half the contact.
 """
 
+import dataclasses
 import math
 import shlex
 import sys
-from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, Literal
 
 import numpy as np
 
 from .. import __version__
-from ..contact_mechanics import coupled_law
-from ..contact_mechanics.contact import contact
+from ..contact_mechanics import contact, coupled_law
 from ..core import (
     PAPER,
     SYMBOLS,
@@ -399,7 +398,7 @@ def build(
         law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
         if isinstance(roller, Cylinder):
             # so that the file states its unit of time in s, and the bodies in SI units
-            law = replace(law, T_ref=roller.T_ref, pair=roller.pair)
+            law = dataclasses.replace(law, T_ref=roller.T_ref, pair=roller.pair)
         return law_as_dataset(law, {})
     for name, given in {"V": V, "delta": delta}.items():
         if given is None:

@@ -12,7 +12,7 @@ moment, N that of M + N dV/dt at slow speed changes, delta_star the creepage at 
 begins, and delta_0 that of free rolling, which is 0 but for a layer.
 """
 
-from dataclasses import dataclass, replace
+import dataclasses
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -143,7 +143,7 @@ def law(
         # of a layer that of the scene, which has the thickness in units of its l0
         table = law_table_of(material.scene().material if covered else pair, base)
         if covered:
-            table = replace(table, T_ref=material.T_ref, pair=pair)
+            table = dataclasses.replace(table, T_ref=material.T_ref, pair=pair)
         if material.body_data.scene.tabulated:
             # the largest error of six decades of speed
             speeds = material.l0 / material.T_ref * np.logspace(-3.0, 3.0, 61)
@@ -178,7 +178,7 @@ def measured_errors(
 
     Parameters
     ----------
-    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.law_table.LawAxis`, the law
+    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.law_tables.LawAxis`, the law
         of every alpha.
     count : number of points.  Of every alpha the laws of the random alphas share it, with at least
         one point each.
@@ -361,7 +361,7 @@ class Check(NamedTuple):
         return bool(self.measured <= self.allowed)
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Report:
     """All checks of a validation, and the settings it ran with.
 

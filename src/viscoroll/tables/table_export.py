@@ -1,9 +1,9 @@
 """Export of laws and grids: netCDF, C, JSON, CSV, Modelica, MATLAB."""
 
 import json
+import os
 import re
-from importlib.resources import files
-from os import PathLike
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ _TAKEN = (
 _ERROR = "linear_error"
 
 
-def export(table: Dataset, path: str | PathLike[str]) -> None:
+def export(table: Dataset, path: str | os.PathLike[str]) -> None:
     """Write a law or a grid for another program, whole or not at all.
 
     Parameters
@@ -199,7 +199,7 @@ def _write_matlab(table: Dataset, path: Path) -> None:
     path: file to write; it is replaced if it exists.
     Raises FileError if it cannot be written.
     """
-    from scipy.io import savemat
+    from scipy import io
 
     names = fields_of(table)
     # lookup blocks want no axes of one node
@@ -217,7 +217,7 @@ def _write_matlab(table: Dataset, path: Path) -> None:
         },
     }
     with replace_file(path) as temporary:
-        savemat(temporary, {"viscoroll": content}, do_compression=True)
+        io.savemat(temporary, {"viscoroll": content}, do_compression=True)
 
 
 def _write_header(dataset: Dataset, path: Path) -> None:
@@ -245,7 +245,7 @@ def _write_header(dataset: Dataset, path: Path) -> None:
     coupled = table.coupled is not None
     constants = (_table_constants if coupled else _law_constants)(table, name)
     evaluator = "".join(
-        files("viscoroll.tables").joinpath(f"c/{part}.h").read_text(encoding="utf-8")
+        resources.files("viscoroll.tables").joinpath(f"c/{part}.h").read_text(encoding="utf-8")
         for part in ("vr_law", "vr_table")[: 1 + coupled]  # vr_table.h needs vr_law.h
     )
     material = "\n".join(

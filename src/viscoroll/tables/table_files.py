@@ -10,9 +10,9 @@ Save is atomic, and load checks everything it reads.  :func:`interpolate` uses t
 """
 
 import io
+import pathlib
 from collections.abc import Iterable
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -301,7 +301,7 @@ def info(path: str | PathLike[str]) -> str:
     """
     table = load(path)
     about = table.attrs
-    size = Path(path).stat().st_size / 1e3
+    size = pathlib.Path(path).stat().st_size / 1e3
     lines = [f"{path}: {about[KIND]}, {size:.0f} kB", about.get("title", "no title"), ""]
     if is_law(table):
         stated = checked_netcdf.stated_errors(table)

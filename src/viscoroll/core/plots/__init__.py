@@ -6,7 +6,7 @@ of contact states, stresses, equilibria, tables and motions.  Other figures are 
 """
 
 import re
-from textwrap import fill
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -200,7 +200,7 @@ def variable_label(variable: Any) -> str:
     label = symbol_label(variable)
     name = str(variable.name).replace("_", " ")
     # 26 characters in a line, since two panels stand beside each other
-    words = fill(str(variable.attrs.get("long_name", "")).partition(",")[0], 26)
+    words = textwrap.fill(str(variable.attrs.get("long_name", "")).partition(",")[0], 26)
     return (
         label.replace(name, words, 1)
         if words and label.startswith(name)

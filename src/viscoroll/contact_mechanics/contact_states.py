@@ -206,7 +206,7 @@ def contact(
     (``tests/kernels/rows/test_unsteady.py``).
 
     The law of one material is evaluated from polynomials of one variable
-    (:mod:`.law_table`), which are computed at first use, in some milliseconds for
+    (:mod:`.law_tables`), which are computed at first use, in some milliseconds for
     half-spaces, and kept.  The result of a state does not depend on other states of the call.
 
     Method "coupled" is good to 3e-4 mu P in Q, 2e-5 in kappa M and 1e-4 in lam and epsilon, where

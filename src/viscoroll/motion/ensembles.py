@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics import FASTEST, Roller, Validity, refuse_beyond, scale_of, warn_of_speeds
-from ..contact_mechanics.validity import validity
+from ..contact_mechanics import (
+    FASTEST,
+    Roller,
+    Validity,
+    refuse_beyond,
+    scale_of,
+    validity,
+    warn_of_speeds,
+)
 from ..core import (
     Booleans,
     Dataset,
@@ -61,7 +68,7 @@ class Fastest(NamedTuple):
     omega: Floats
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Ensemble(RollResult):
     """Motions 0 ... n - 1 at common output times, in the units of the roller, as for a
     :class:`Motion`.

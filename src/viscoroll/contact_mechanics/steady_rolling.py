@@ -28,8 +28,8 @@ dM_half_space_dV and dM_cylinder_dV; :class:`.steady_states.States` have omega a
 in place of the slopes.
 """
 
+import functools
 import math
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,7 +46,7 @@ from ..laws import LawTable
 from .contact_table import Contacts, refuse_beyond
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
-from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
+from .rolling_resistance import branches, find_zeros, speed_nodes
 from .steady_loads import (
     Loads,
     find_speeds,
@@ -69,6 +69,10 @@ from .steady_states import (
 
 # --- Steady rolling with feedback on omega ---
 
+#: least size of kappa times a load, other than 0, for which the nodes have a crossing
+LEAST_LOAD = 1e-120
+#: largest size of kappa times a load
+MOST_LOAD = 1e80
 #: nodes into which an interval of V with partial slip is divided
 _STICK_NODES = 16
 #: nodes of the slip between its limits
@@ -224,9 +228,9 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     loads: the loads with their gains, dimensionless.
     n: index of the load.
     Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is infinite
-    with the sign of omega, as in :func:`.contact.contact` at V = 0, and whose eigenvalues are
-    those of the slowest speed of the nodes; or an empty list: also where the gains on omega add to
-    0, where force + torque are 0 at rest, and of a cover, on which a moment remains.
+    with the sign of omega, as in :func:`.contact_states.contact` at V = 0, and whose eigenvalues
+    are those of the slowest speed of the nodes; or an empty list: also where the gains on omega add
+    to 0, where force + torque are 0 at rest, and of a cover, on which a moment remains.
     """
     gains = loads.gains
     total = loads.force[n] + loads.torque[n]
@@ -268,7 +272,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
         return problem.slip(free) - free.slips[which]
 
     nodes = search_nodes(problem.contacts.law)
-    zeros = [find_zeros(partial(beyond, n), nodes) for n in range(3)]
+    zeros = [find_zeros(functools.partial(beyond, n), nodes) for n in range(3)]
     nodes = np.unique(np.concatenate([nodes, *zeros]))
     free = problem.free_rolling(nodes)
     low, _, high = free.slips

@@ -8,7 +8,7 @@ bodies would have as half-spaces.
 
 from __future__ import annotations
 
-from dataclasses import replace
+import dataclasses
 from functools import cached_property
 from typing import Any
 
@@ -93,7 +93,7 @@ class Steadiness(Assumption):
         Examples
         --------
         >>> import viscoroll as vr
-        >>> from viscoroll.contact_mechanics.validity import Steadiness
+        >>> from viscoroll.contact_mechanics.model_validity import Steadiness
         >>> states = vr.presets.RUBBER_CYLINDER.validity([1.0, 2.0]).steady.free
         >>> Steadiness.of(states).holds
         array([ True,  True])
@@ -128,14 +128,14 @@ class Steadiness(Assumption):
         Examples
         --------
         >>> import viscoroll as vr
-        >>> from viscoroll.contact_mechanics.validity import Steadiness
+        >>> from viscoroll.contact_mechanics.model_validity import Steadiness
         >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
         >>> states = motion.roller.validity(motion.V).steady.free
         >>> float(Steadiness.along(states, motion.regime > 0, motion.x, ends=True).share)
         0.0
         """
         # rest after a motion counts as a tiny speed, rest before it stays 0
-        free = replace(
+        free = dataclasses.replace(
             free,
             u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0),
         )
