@@ -51,7 +51,7 @@ def quoted(which):
 CASES = {
     "a workbook": (
         "PK\u0003\u0004",
-        "save its sheet as CSV",
+        "save the sheet as CSV",
         lambda text, *_: (rubbers.filled(RIGHT, {"sep": ";"}), {}),
     ),
     "a gap": (RIGHT + "200;nan;2\n", "remove the row", without("200;nan")),
@@ -71,7 +71,7 @@ CASES = {
         "f [Hz];20;;30;\n;E' [MPa];E'' [MPa];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6; S/2e6; L/2e6>\n",
         "no column was found for frequency",
         give(columns={"frequency": "column 0"}),
-        "rename or remove one in the file",
+        "rename or remove one of",
     ),
     "different headings": (
         RIGHT + "f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n",
@@ -80,7 +80,7 @@ CASES = {
     ),
     "two tables, with temperatures": (
         RIGHT + RIGHT,
-        "write 'Temperature 20 °C' above each",
+        "above each, as 'Temperature 20 °C'",
         change("f [Hz]", "Temperature 20 °C\nf [Hz]"),
     ),
     "temperatures that are not understood": (
@@ -100,19 +100,19 @@ CASES = {
     ),
     "a unit that is not known": (
         "f [Schlag/min];E' [MPa];E'' [MPa]\n<60*f; S/1e6; L/1e6>\n",
-        "is not a unit of frequency: give the unit of its numbers, as units=",
+        "is not a unit of frequency: give the unit of the column, as units=",
         give(units={"frequency": "rpm"}),
     ),
     "a unit of another dimension, named": (
         "f [Hz];S1 [N/mm];S2 [N/mm]\n<f; S/1e6; L/1e6>\n",
-        "'N/mm' is not a unit of storage: give the unit of its numbers, as units=",
+        "'N/mm' is not a unit of storage: give the unit of the column, as units=",
         give(units={"storage": "MPa", "loss": "MPa"}),
         {"storage": "S1 [N/mm]", "loss": "S2 [N/mm]"},
     ),
     **{
         f"a factor, named: {factor}": (
             f"f [Hz];E' {factor};E'' {factor}\n<f; S/1e6; L/1e6>\n",
-            "is not a unit of storage: give the unit of its numbers, as units=",
+            "is not a unit of storage: give the unit of the column, as units=",
             give(units={"storage": "MPa", "loss": "MPa"}),
             {"storage": f"E' {factor}", "loss": f"E'' {factor}"},
         )
@@ -125,7 +125,7 @@ CASES = {
     ),
     "an angular frequency in Hz": (
         "Angular frequency [Hz];E' [MPa];E'' [MPa]\n<w; S/1e6; L/1e6>\n",
-        "or give the unit of its numbers, as units=",
+        "or give the unit of the column, as units=",
         give(units={"angular frequency": "rad/s"}),
     ),
     "frequencies that contradict, the second": (
@@ -157,12 +157,12 @@ CASES = {
     ),
     "logarithms": (
         "f,Storage,Loss\n<log(f); log(S); log(L)>\n",
-        "if these are logarithms, write log before the heading",
+        "if the column has logarithms, write log before its",
         change("f,Storage,Loss", "log f (Hz),log Storage (Pa),log Loss (Pa)"),
     ),
     "four columns without headings": (
         "<n; f; S/1e6; L/1e6>\n",
-        "have the headings 'column 0', 'column 1'",
+        "with 'column 0', 'column 1'",
         give(
             columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"},
             units=("Hz", "MPa"),
@@ -175,7 +175,7 @@ CASES = {
     ),
     "a sweep of temperature": (
         "T [°C];E' [MPa];E'' [MPa]\n<20+n; S/1e6; L/1e6>\n",
-        "a sweep of temperature",
+        "temperature sweeps cannot be used",
         give(columns={"frequency": "T [°C]"}),
         "is not a unit of frequency",
     ),

@@ -241,7 +241,7 @@ class SeriesFit(Result):
         """
         if self._fault:
             warn_of_model(
-                f"{self._fault}: see the large errors in fit.plot(), and the how-to on DMA data"
+                f"{self._fault}: fit.plot() shows the large errors, and the page on DMA data causes"
             )
         E = self.E
         measured = self.measured
