@@ -476,7 +476,7 @@ def test_fit_at_the_strain_of_the_contact():
     ]
     assert "data at a strain of" in vr.fit_at_strain(apart, ROLLER, 3.0).source
     for given, roller, words in (
-        ([sets[0], dataclasses.replace(sets[1], mode="shear")], ROLLER, "all of one of them"),
+        ([sets[0], dataclasses.replace(sets[1], mode="shear")], ROLLER, "all of tension or all"),
         ([], ROLLER, "at least one"),
         ([record(0.01), record(0.01)], ROLLER, "one or more, of different strains"),
         (sets, vr.presets.RUBBER_ROLLER, "a Cylinder of a Material"),

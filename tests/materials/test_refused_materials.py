@@ -388,7 +388,7 @@ REFUSED = [
                 "temperature": TWO,
                 "shift": [10.0, 1.0],
             },
-            "reference = 10.0: must be one of 0.0, 20.0 °C, whose factors shift lists; for others "
+            "reference = 10.0: must be one of 0.0, 20.0 °C, which have a factor in shift; for others "
             "give shift as a function": {
                 "temperature": TWO,
                 "shift": [0.1, 1.0],

@@ -49,7 +49,7 @@ def quoted(which):
 #: title -> the file, words of its refusal, and what its advice is; a refusal follows where words of
 #: it are given
 CASES = {
-    "a workbook": (
+    "a spreadsheet": (
         "PK\u0003\u0004",
         "save the sheet as CSV",
         lambda text, *_: (rubbers.filled(RIGHT, {"sep": ";"}), {}),
@@ -130,12 +130,12 @@ CASES = {
     ),
     "frequencies that contradict, the second": (
         "Angular frequency [1/s];Frequency [Hz];E' [MPa];E'' [MPa]\n<f; f; S/1e6; L/1e6>\n",
-        "choose by",
+        "choose one by",
         quoted(1),
     ),
     "a phase angle that is wrong": (
         "f [Hz];Phase [rad];E' [MPa];E'' [MPa];tan_delta\n<f; 0.9*tan; S/1e6; L/1e6; tan>\n",
-        "choose by",
+        "choose one by",
         quoted(0),
         "tan delta contradicts storage and loss",
     ),

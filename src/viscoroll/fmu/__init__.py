@@ -377,7 +377,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
         found = "that of the coupled solution of pressure and shear, which an FMU cannot contain"
-        allowed = "give the roller (its FMU has the fast law), or write it as C by tables.export"
+        allowed = "give the roller (its FMU has the fast law), or export the law as C code"
         sentence = f"the contact law that is given is {found}: {allowed}"
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)  # which warns of a Cylinder

@@ -383,7 +383,7 @@ def conductance(
         raise described_error(
             "core",
             "is 'cooled', but thickness and conductivity of the cover are not both given",
-            "'insulated', or both given",
+            "'insulated', or given with both",
         )
     if h is not None and np.any(h >= arrays["R"]):
         raise ParameterError(

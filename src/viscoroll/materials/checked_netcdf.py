@@ -194,7 +194,7 @@ def is_law(path: FilePath) -> bool:
     Raises FileError as :func:`read_content`.
     """
     content = read_content(
-        path, "file of a material or a law", f"{_REWRITE}, or a law by vr.tables.save"
+        path, "file of a material or of a contact law", f"{_REWRITE}, or a law by vr.tables.save"
     )
     return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 

@@ -519,7 +519,7 @@ def _long_time_shear(
             "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0",
         )
     name, value = given.popitem()
-    named = {"G0": "G0 - sum of G (at long times)", "beta = 0": "G of beta = 0 (at long times)"}
+    named = {"G0": "long-time modulus G0 - sum of G", "beta = 0": "G of beta = 0 (long times)"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
 

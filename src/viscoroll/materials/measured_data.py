@@ -501,7 +501,7 @@ class Measured:
         check_text("source", self.source)
         pairs = check_array("M_error", self.M_error, low=0.0)
         if pairs.size % 2 or not (np.diff(pairs.ravel()[::2]) > 0.0).all():
-            allowed = "pairs (transit frequency in 1/s, relative error of M), by rising frequency"
+            allowed = "pairs (transit frequency in 1/s, relative error of moment M), ascending"
             raise described_error("M_error", "is not in pairs, or not sorted by frequency", allowed)
         vars(self)["M_error"] = tuple(map(tuple, pairs.reshape(-1, 2).tolist()))
         if self.strain is not None:
@@ -592,7 +592,7 @@ class Measured:
         """Return band, misfit, accuracy of M and source in one line."""
         source = f" ({self.source})" if self.source else ""
         errors = [100.0 * error for _, error in self.M_error]
-        M = f", accuracy of moment M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
+        M = f", error of moment M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
         return (
             f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %"
             f"{M}{source}"

@@ -430,7 +430,7 @@ def describe_body(body: Any) -> str:
     """
     if not isinstance(body, Material):
         return repr(body)
-    modes = f"{body.prony.E.size} mode{'s' * (body.prony.E.size != 1)}"
+    modes = f"{body.prony.E.size} Prony term{'s' * (body.prony.E.size != 1)}"
     text = body.name or (
         "rigid" if body.is_rigid else f"E = {body.E:g} Pa, nu = {body.nu:g}, {modes}"
     )

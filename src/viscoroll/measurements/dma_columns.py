@@ -302,7 +302,7 @@ def _contradiction(meaning: Reading, overruling: ByQuantity) -> str:
         return f"its unit {unit!r} is not a unit of {name}: {unit_advice(name)}"
     if "angular" in name and unit.lower().endswith(("hz", "cps")):
         return (
-            f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
+            f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in the "
             f"heading, or {unit_advice(name)}"
         )
     return ""

@@ -241,7 +241,7 @@ class SeriesFit(Result):
         """
         if self._fault:
             warn_of_model(
-                f"{self._fault}: fit.plot() shows the large errors, and the page on DMA data causes"
+                f"{self._fault}: fit.plot() shows the errors, the how-to on DMA data their causes"
             )
         E = self.E
         measured = self.measured

@@ -191,9 +191,9 @@ def _products(fit: Any) -> str:
     verb = "are" if " and " in (sure or near) else "is"
     text = f"only {sure or near} {verb} determined" + " within the ranges given" * limited
     more = (
-        f"; close to these values also {near}, more precisely"
+        f"; near these values also {near}, more precisely"
         if sure
-        else ", but only close to these values"
+        else ", but only near these values"
     )
     return text + f"{more}{_NEAR}" * bool(near)
 
@@ -479,7 +479,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         yield (
             "accuracy",
             f"of the rolling moment M: {errors} at the lowest, middle and highest speed that the "
-            "data cover: other Prony series that fit the data as well differ by this from M",
+            "data cover; M of other series that fit the data as well differs by no more",
         )
         (low, high), (least, most) = (
             (part.min(), part.max()) for part in (found.E / fit.E, found.alpha / prony.alpha)
@@ -497,7 +497,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         )
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside):
-        yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"
+        yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the range of the data' if out else ''}"
 
 
 def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
@@ -528,7 +528,7 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
         )
     if np.isfinite(shifts.mismatch).any():
         most = np.nanmax(shifts.mismatch)
-        yield "", f"shifted curves of neighbours differ by up to {most:.2%} in the overlap (rms)"
+        yield "", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"
     for pair in undetermined_shifts(shifts):
         yield "", f"the overlap does not determine the shift {pair}: the curves are flat there"
 

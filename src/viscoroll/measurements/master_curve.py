@@ -191,8 +191,8 @@ def listed_factors(
         raise ParameterError(
             "reference",
             base,
-            f"one of {', '.join(map(str, temperatures))} °C, whose factors shift lists; for others "
-            "give shift as a function of the temperature, as vr.WLF(T0=20.0)",
+            f"one of {', '.join(map(str, temperatures))} °C, which have a factor in shift; for "
+            "others give shift as a function of the temperature, as vr.WLF(T0=20.0)",
         )
     return found / found[index], base
 

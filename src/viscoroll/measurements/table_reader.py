@@ -440,7 +440,7 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     holds = np.ones(at.size, bool)
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
-    advice = "if strain or temperature differs, make a file of each (DMA: or a temperature column)"
+    advice = "if strain or temperature differs, make a file for each (DMA: or a temperature column)"
     table.require(holds, f"an earlier line has the same {name}, but another modulus: {advice}")
     if change.max(initial=0.0) > _SCATTER:
         warn_of_model(
