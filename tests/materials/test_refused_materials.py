@@ -388,8 +388,8 @@ REFUSED = [
                 "temperature": TWO,
                 "shift": [10.0, 1.0],
             },
-            "reference = 10.0: must be one of 0.0, 20.0 °C, which have a factor in shift; for others "
-            "give shift as a function": {
+            "reference = 10.0: must be one of 0.0, 20.0 °C, which have a factor in shift; for "
+            "others give shift as a function": {
                 "temperature": TWO,
                 "shift": [0.1, 1.0],
                 "reference": 10.0,
