@@ -244,7 +244,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
         for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by):
             if end is None:
                 yield (
-                    f"the interval of {name} has no {side} end: all values up to the {side} end of "
+                    f"the interval of {name} has no {side} end: all values to the {side} end of "
                     "the range given for it fit the data"
                 )
             for bound in bounds:
@@ -261,7 +261,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
                 "a cylinder of these values, or with a larger starts"
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
-        yield f"the best fit has {problem.names[i]} at an end of its range: extend the range"
+        yield f"the best fit is at an end of the range of {problem.names[i]}: extend it, if possible"
     for bound, ends in limited.items():
         yield f"the range given for {bound}, not the data, determines {', '.join(ends)}"
 
