@@ -261,7 +261,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
                 "a cylinder of these values, or with a larger starts"
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
-        yield f"the best fit is at an end of the range of {problem.names[i]}: extend it, if possible"
+        yield f"the best fit is at an end of the range of {problem.names[i]}: extend it if possible"
     for bound, ends in limited.items():
         yield f"the range given for {bound}, not the data, determines {', '.join(ends)}"
 
