@@ -230,8 +230,8 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
             path,
             name,
             key,
-            f"{key} must be left out, since the key file gives the whole material: to change it, "
-            "remove file, and write all keys of the material (E, nu, ...) here",
+            f"{key} must be left out, since the key file gives the whole material: to change "
+            f"{key}, remove file, and write all keys of the material (E, nu, ...) here",
         )
     return as_struct(path, name, content, FileSection)
 

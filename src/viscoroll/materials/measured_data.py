@@ -231,8 +231,8 @@ class ShiftFactors:
             raise ParameterError(
                 "temperature",
                 temperature,
-                f"from {low - NEAR} to {high + NEAR} °C, near found factors; for others use the "
-                "WLF or Arrhenius law that .wlf() or .arrhenius() of these ShiftFactors fits",
+                f"from {low - NEAR} to {high + NEAR} °C, the range of the factors; for others use "
+                "the WLF or Arrhenius law that .wlf() or .arrhenius() of these ShiftFactors fits",
             )
         if low == high:
             return self.a_T[0]
@@ -374,7 +374,7 @@ def check_celsius(name: str, temperature: Any) -> float:
     low, high = USUAL_RANGE
     if not low <= found <= high:
         warn_of_model(
-            f"{name} = {found:g} is outside {low:g} to {high:g} degrees Celsius: the number looks "
+            f"{name} is outside {low:g} to {high:g} degrees Celsius: the number looks "
             "like kelvin, or like a value that was converted twice"
         )
     return found

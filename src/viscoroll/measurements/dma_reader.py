@@ -159,8 +159,8 @@ def read_relaxation(
         source.refuse_unread_temperatures()
     elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise table.error(
-            f"was measured at {temperature.min():g} to {temperature.max():g} °C, but must be of "
-            "one temperature: keep the lines of one"
+            f"was measured at {temperature.min():g} to {temperature.max():g} °C: keep the lines of "
+            "one temperature"
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)

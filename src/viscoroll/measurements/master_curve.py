@@ -458,7 +458,7 @@ class _LogCurve:
         if self.x.size < 2:
             raise described_error(
                 "omega",
-                "has only one value at a temperature",
+                "has only one value at one of the temperatures",
                 "two frequencies or more at each temperature",
             )
         kind = CubicSpline if self.x.size > 3 else PchipInterpolator
