@@ -151,15 +151,18 @@ REFUSED = [
                 netcdf(vr.tables.law(SOFT, STEEL)),
                 of_roller(OF_LAW + ROLLER_FILE),
             ],
-            "line 2 | without units": lambda: [netcdf(law_file()), of_roller(OF_LAW + ROLLER_FILE)],
+            "line 2 | dimensionless contact law": lambda: [
+                netcdf(law_file()),
+                of_roller(OF_LAW + ROLLER_FILE),
+            ],
             "line 2: [base] | dma.toml | section [material] is missing": lambda: [
                 file("[scene]\nalpha = 2.0\n", "dma.toml"),
                 of_materials('[base]\nfile = "dma.toml"\n'),
             ],
-            "V is in m/s and km/h, a unit that is not known: must be in a unit of the": lambda: (
+            "V has the unit m/s and km/h, a unit that is not known: must be in a unit of the": lambda: (
                 data("V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n")
             ),
-            "delta is in deg, an angle: must be": lambda: data(
+            "delta has the unit deg, an angle: must be": lambda: data(
                 "V [m/s],delta [deg],Q [N/m]\n1,2,3\n", "traction"
             ),
             "3: is not a path": [
@@ -191,7 +194,10 @@ REFUSED = [
     *files(
         measured,
         {
-            "line 2: prior = 3: must be a section [prior]": ("[cylinder]", "prior = 3\n[cylinder]"),
+            "line 2: prior = 3: must be a section with the header [prior]": (
+                "[cylinder]",
+                "prior = 3\n[cylinder]",
+            ),
             "is not a path: must be a text without null characters": ('"drum.csv"', '"a\\u0000"'),
             "line 19: [data] kind is missing: must be one of resistance, traction, coastdown": (
                 'kind = "resistance"',
@@ -223,7 +229,7 @@ REFUSED = [
     *files(
         run,
         {
-            "[base] base_E: material | table of pressure and shear | coupled = false in": (
+            "[base] base_E: material | table of the coupled solution | coupled = false in": (
                 "rubber on steel",
                 "coupled = false",
                 "",

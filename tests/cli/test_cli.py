@@ -303,7 +303,7 @@ REFUSED = {
     "material fit rubber.toml --column storage": "argument --column: 'storage' must be "
     "NAME=HEADING, for example storage=Module 1",
     "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=HEADING",
-    "material fit dma.csv --mode shear": "mode = 'shear': must be 'tension', the mode of dma.csv",
+    "material fit dma.csv --mode shear": "mode = 'shear': must be 'tension', as read from dma.csv",
     "material fit dma.csv --column temperature=E_loss": "given for temperature, but its unit "
     "'MPa' is not a unit of temperature: give the unit of the column, as units={'temperature'",
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",

@@ -298,7 +298,7 @@ REFUSED = [
     *each(
         vr.fit_prony,
         {
-            "omega | a vector": (1.0, 1.0, 1.0),
+            "omega | a list of numbers": (1.0, 1.0, 1.0),
             "omega | within a factor": ([1e-20, 1.0, 1e20], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]),
             "storage has no plateau at low frequencies (0.0001 at omega = 0.01): must be that "
             "of a solid, which": (DMA[0], DMA[0] ** 2, DMA[0]),

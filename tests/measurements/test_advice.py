@@ -54,8 +54,8 @@ CASES = {
         "save the sheet as CSV",
         lambda text, *_: (rubbers.filled(RIGHT, {"sep": ";"}), {}),
     ),
-    "a gap": (RIGHT + "200;nan;2\n", "remove the row", without("200;nan")),
-    "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
+    "a gap": (RIGHT + "200;nan;2\n", "remove this line", without("200;nan")),
+    "a frequency of 0": (RIGHT + "0;3;2\n", "remove this line", without("0;3")),
     "words among the rows": (
         RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n",
         "remove it",
@@ -137,7 +137,7 @@ CASES = {
         "f [Hz];Phase [rad];E' [MPa];E'' [MPa];tan_delta\n<f; 0.9*tan; S/1e6; L/1e6; tan>\n",
         "choose one by",
         quoted(0),
-        "tan delta contradicts storage and loss",
+        "tan delta disagrees with storage and loss",
     ),
     "a tan delta in per cent beside moduli": (
         "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 100*tan>\n",
