@@ -159,7 +159,7 @@ REFUSED = [
                 file("[scene]\nalpha = 2.0\n", "dma.toml"),
                 of_materials('[base]\nfile = "dma.toml"\n'),
             ],
-            "V has the unit m/s and km/h, a unit that is not known: must be in a unit of the": lambda: (
+            "V has the unit m/s and km/h, a unit that is not known: must be in a unit": lambda: (
                 data("V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n")
             ),
             "delta has the unit deg, an angle: must be": lambda: data(
