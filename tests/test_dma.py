@@ -136,7 +136,7 @@ def test_temperatures_as_they_were_measured():
         )
         assert close(fit.shifts.temperature, TEMPERATURES, 1e-12, scale=1.0)
         assert close(fit.shifts.a_T, exact.shifts.a_T, tol.DMA_SHIFTED_TIMES)
-        assert "were combined into 8" in str(fit)
+        assert "were combined: " in str(fit)
         assert "were taken for" not in str(exact)
     assert close(exact.shifts.a_T, wlf(TEMPERATURES), tol.DMA_SHIFTED_TIMES)
 

@@ -86,7 +86,7 @@ REFUSED = [
     *each(
         of_column,
         {
-            "line 4 ('x') is not a row of numbers": "V0;mu\n1;0.1\n2;0.2\nx",
+            "line 4 ('x') is not a line of numbers": "V0;mu\n1;0.1\n2;0.2\nx",
             "line 4 ('3') has 1 cells": "V0;mu\n1;0.1\n2;0.2\n3",
         },
         vr.FileError,
@@ -174,7 +174,7 @@ REFUSED = [
         ),
         {
             "unknown | at least one name": {"unknown": {}},
-            "unknown E | (1e+06, 2e+06) | the value with which the search starts, 3e+06": {
+            "unknown E | (1e+06, 2e+06) | contains 3e+06, the value with which the search starts": {
                 "unknown": {"E": (1e6, 2e6)}
             },
             "standard deviation of prior E is in kPa: must be a number without dimension": {
