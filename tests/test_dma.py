@@ -136,7 +136,7 @@ def test_temperatures_as_they_were_measured():
         )
         assert close(fit.shifts.temperature, TEMPERATURES, 1e-12, scale=1.0)
         assert close(fit.shifts.a_T, exact.shifts.a_T, tol.DMA_SHIFTED_TIMES)
-        assert "were combined into 8" in str(fit)
+        assert "were combined: " in str(fit)
         assert "were taken for" not in str(exact)
     assert close(exact.shifts.a_T, wlf(TEMPERATURES), tol.DMA_SHIFTED_TIMES)
 
@@ -156,7 +156,7 @@ def test_a_plateau_fixes_no_shift():
     assert "does not determine the shift from 0 to 10 °C" in str(fit)
 
 
-@pytest.mark.filterwarnings("ignore:E' and E''")
+@pytest.mark.filterwarnings("ignore:storage and loss modulus overlap")
 @pytest.mark.parametrize("part", [lambda f: f, lambda f: 1.0 / (800.0 * f), lambda f: 1.0])
 def test_a_part_of_the_loss_that_does_not_shift_leaves_the_shift_to_the_storage(part):
     """A low-loss material, a decade for 5 K, with a part of E'' of the instrument as large as its
@@ -178,13 +178,14 @@ def test_moduli_that_disagree_on_the_shift_and_factors_that_rise_are_named():
     omega, storage, loss = CURVES
     loss = loss * (1.0 + 0.1 * np.log(omega))
     with pytest.warns(
-        vr.ModelWarning, match="E' and E'' overlap best at different shifts from -30 to -20 °C"
+        vr.ModelWarning,
+        match="storage and loss modulus overlap best at different shifts from -30 to -20 °C",
     ):
         vr.fit_prony(omega, storage, loss, temperature=TEMPERATURES, misfit=1.0)
     factors = wlf(TEMPERATURES)
     factors[2] = 2.0 * factors[1]
     with pytest.warns(
-        vr.ModelWarning, match=r"a_T rises with temperature from -30 to -20 °C \(by a factor of 2\)"
+        vr.ModelWarning, match=r"the shift factor a_T rises from -30 to -20 °C \(by a factor of 2\)"
     ):
         vr.fit_prony(*CURVES, temperature=TEMPERATURES, shift=factors, misfit=1.0)
 
@@ -218,7 +219,7 @@ def test_found_factors_are_a_shift_and_give_a_law():
     assert close(moved.T_ref, rubber.T_ref * wlf(-25.0), tol.DMA_SHIFT_BETWEEN)
     two = vr.ShiftFactors(temperature=(0.0, 10.0), a_T=(9.0, 1.0), T0=10.0)
     refused(two.wlf, "at least 3")
-    with pytest.warns(vr.ModelWarning, match="times the shift factor that was found at"):
+    with pytest.warns(vr.ModelWarning, match="times the factor found at"):
         vr.ShiftFactors(temperature=(0.0, 10.0, 20.0), a_T=(100.0, 99.0, 1.0), T0=0.0).wlf()
 
 
@@ -292,7 +293,10 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
     assert not fit.reached
     text = str(fit)
     assert f"{fit.kramers_kronig.median:.2f} times the value from the slope of E'" in text
-    assert "the moduli are inconsistent or rise steeply, or relaxation times are far apart" in text
+    assert (
+        "the moduli contradict each other or rise steeply, or relaxation times are far apart"
+        in text
+    )
     flat = vr.fit_prony(omega[:5], np.full(5, 1e8), loss[:5])
     assert "E''       is above 0, but E' does not rise" in str(flat)
 

@@ -316,14 +316,14 @@ def test_cold_rubber_relaxes_slowly_but_has_fast_waves():
 REFUSED = each(
     lambda roller: roller.temperature(1.0, **WARM),
     {
-        "given to the Material": vr.presets.RUBBER_CYLINDER,
-        "rises at": with_shift(lambda T: T + 300.0),
+        "given to the viscoelastic Material": vr.presets.RUBBER_CYLINDER,
+        "rises with the temperature at": with_shift(lambda T: T + 300.0),
         "temperature = None": with_shift(WLF, vertical_shift="entropic", temperature=None),
         "load has shape": with_shift(WLF, thickness=0.03).replace(load=[1e4, 2e4]),
-        "another one at each temperature": with_shift(
+        "law would differ at each temperature": with_shift(
             WLF, vertical_shift="entropic", thickness=0.03
         ),
-        "relaxes too": [
+        "is viscoelastic too": [
             beside(temperature=60.0),
             beside(thickness=0.01),
             beside(shift=vr.WLF(T0=-60.0)),
@@ -359,11 +359,11 @@ def test_beyond_the_ranges_is_named():
 
     found = with_shift(Factors((-40.0, 60.0))).temperature(5.0, **MILD)
     assert not found.count
-    assert "°C, above 60, up to which the shift of the material is defined" in found.reason
+    assert "°C, but the shift of the material is defined only up to 60 °C" in found.reason
     measured = with_shift(WLF, measured=vr.Measured(1e-3, 1e-2, 0.0))
     marked = measured.temperature(5.0, **MILD)
     assert not marked.measured[0]
-    assert marked.reason.startswith("loss and heat given off are equal at 87.82")
+    assert marked.reason.startswith("the heat given off equals the loss at 87.82")
 
 
 # --- run files ---
@@ -468,18 +468,18 @@ def test_fit_at_the_strain_of_the_contact():
     assert close(
         own.storage(1.0) / RUBBER.storage(1.0), (fit.strain / 0.01) ** -0.3, tol.STRAIN_FIT
     )
-    assert "between the sets at 0.001 and 0.1" in own.measured.source
+    assert "between data at 0.001 and 0.1" in own.measured.source
     small = vr.fit_at_strain([record(1e-6, 0.0), record(1e-5, 0.0)], ROLLER, 3.0)
-    assert small.source == "a test, the set at a strain of 1e-05"
+    assert small.source == "a test, data at a strain of 1e-05"
     apart = [
         dataclasses.replace(each, temperature=np.full(omega.size, T))
         for each, T in zip(sets, (20.0, 60.0))
     ]
-    assert "the set at a strain of" in vr.fit_at_strain(apart, ROLLER, 3.0).source
+    assert "data at a strain of" in vr.fit_at_strain(apart, ROLLER, 3.0).source
     for given, roller, words in (
-        ([sets[0], dataclasses.replace(sets[1], mode="shear")], ROLLER, "all of one of them"),
+        ([sets[0], dataclasses.replace(sets[1], mode="shear")], ROLLER, "all of tension or all"),
         ([], ROLLER, "at least one"),
-        ([record(0.01), record(0.01)], ROLLER, "each of another strain"),
+        ([record(0.01), record(0.01)], ROLLER, "one or more, of different strains"),
         (sets, vr.presets.RUBBER_ROLLER, "a Cylinder of a Material"),
     ):
         refused(partial(vr.fit_at_strain, given, roller, 3.0), words)

@@ -55,7 +55,7 @@ REFUSED = [
                 "2.3e5", "inf"
             ),
             "line 1: [material] T_epsilon and": "[material]\nE = 1\nnu = 0.5\nT_epsilon = 1.0",
-            "line 6: [material] temperature = 30: needs wlf or": RUBBER_FILE + "temperature = 30.0",
+            "line 6: [material] temperature = 30 needs wlf or": RUBBER_FILE + "temperature = 30.0",
             "file.toml | temperature = -40.0 | °C, where the WLF shift is infinite": RUBBER_FILE
             + "wlf = { T0 = 20.0 }\ntemperature = -40.0",
             "file.toml | line 6: [material.arrhenius] needs energy": RUBBER_FILE
@@ -118,10 +118,10 @@ REFUSED = [
             "line 2: [start] V0 is missing: must be a number": lambda: read_run(
                 file('preset = "paper-section-5"\n[start]\nomega0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
             ),
-            "given.nc | law_schema = 2, but viscoroll": lambda: of_grid(
+            "given.nc | law_schema 2, but viscoroll": lambda: of_grid(
                 law_file().assign_attrs(law_schema=2)
             ),
-            "given.nc | its numbers do not have the checksum": lambda: of_grid(
+            "given.nc | its numbers do not match the checksum": lambda: of_grid(
                 law_file().assign_attrs(sha256_of_numbers="0" * 64)
             ),
             "given.nc: is damaged or was edited: | attribute material": lambda: of_grid(
@@ -134,7 +134,7 @@ REFUSED = [
             "(it has no attribute viscoroll_table = 'grid'): vr.tables.build": lambda: (
                 vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc")
             ),
-            "given.nc: is a grid or a result, not a material: read a grid by vr": lambda: (
+            "given.nc: is a grid or a result, not a material: give a file that": lambda: (
                 vr.Material.from_netcdf(netcdf(grid()))
             ),
             "coordinate 'alpha' must be > 0 and increase strictly": lambda: vr.load_law(
@@ -147,19 +147,22 @@ REFUSED = [
                 lambda: vr.Material.from_netcdf(file("E = 1", "given.nc")),
                 lambda: vr.load_law(file("E = 1", "given.nc")),
             ],
-            "line 2 | law of a pair of materials: it must be that of one": lambda: [
+            "line 2 | law of two materials: it must be that of one": lambda: [
                 netcdf(vr.tables.law(SOFT, STEEL)),
                 of_roller(OF_LAW + ROLLER_FILE),
             ],
-            "line 2 | without units": lambda: [netcdf(law_file()), of_roller(OF_LAW + ROLLER_FILE)],
+            "line 2 | dimensionless contact law": lambda: [
+                netcdf(law_file()),
+                of_roller(OF_LAW + ROLLER_FILE),
+            ],
             "line 2: [base] | dma.toml | section [material] is missing": lambda: [
                 file("[scene]\nalpha = 2.0\n", "dma.toml"),
                 of_materials('[base]\nfile = "dma.toml"\n'),
             ],
-            "V is in m/s and km/h, a unit that is not known: must be in a unit of the": lambda: (
+            "V has the unit m/s and km/h, a unit that is not known: must be in a unit": lambda: (
                 data("V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n")
             ),
-            "delta is in deg, an angle: must be": lambda: data(
+            "delta has the unit deg, an angle: must be": lambda: data(
                 "V [m/s],delta [deg],Q [N/m]\n1,2,3\n", "traction"
             ),
             "3: is not a path": [
@@ -178,12 +181,12 @@ REFUSED = [
     *files(
         of_material,
         {
-            "is incomplete, as 'nu' is missing; write the file again by Material": (
+            "is incomplete: the variable or attribute 'nu' is missing; write the file": (
                 SOFT_DATA.drop_vars("nu")
             ),
             "given = 'both': must be relaxation or creep": SOFT_DATA.assign_attrs(given="both"),
             "has a wrong value (nu = 0.7: must be in (-1, 0.5])": SOFT_DATA.assign(nu=0.7),
-            "attribute schema = 'other', not 'viscoroll material 1'": SOFT_DATA.assign_attrs(
+            "has the schema 'other', but must have 'viscoroll material 1'": SOFT_DATA.assign_attrs(
                 schema="other"
             ),
         },
@@ -191,7 +194,10 @@ REFUSED = [
     *files(
         measured,
         {
-            "line 2: prior = 3: must be a section [prior]": ("[cylinder]", "prior = 3\n[cylinder]"),
+            "line 2: prior = 3: must be a section with the header [prior]": (
+                "[cylinder]",
+                "prior = 3\n[cylinder]",
+            ),
             "is not a path: must be a text without null characters": ('"drum.csv"', '"a\\u0000"'),
             "line 19: [data] kind is missing: must be one of resistance, traction, coastdown": (
                 'kind = "resistance"',
@@ -223,7 +229,7 @@ REFUSED = [
     *files(
         run,
         {
-            "[base] base_E: material | table of pressure and shear | coupled = false in": (
+            "[base] base_E: material | table of the coupled solution | coupled = false in": (
                 "rubber on steel",
                 "coupled = false",
                 "",
@@ -283,9 +289,9 @@ REFUSED = [
                 "scale = 0.2",
                 "scale = 0.6",
             ),
-            "[material.prony] E_1: the Prony series of the cover (cylinder) has several "
-            "values: must be one for all cylinders (thickness, load and R may differ, and "
-            "beside a rigid body E and nu": (
+            "[material.prony] E_1: the Prony series of the cover (of the cylinder) has several "
+            "values: must be the same for all cylinders (thickness, load and R may differ; E "
+            "and nu too if the other body is rigid": (
                 "on what is rigid",
                 "[material]",
                 "coupled = false\n[material]\nthickness = 0.1",

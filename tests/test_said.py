@@ -36,7 +36,7 @@ SAID = {
     "Figure": lambda: ROLLER.contact(
         LABELLED, delta=xr.DataArray([0.1, 0.2], dims="of", coords={"of": ["x", "y"]})
     ).plot(),
-    "throw has few points in full slip (2), which determine mu": lambda: vr.identify(
+    "throw has few points in full slip (2), which alone determine mu": lambda: vr.identify(
         roller(), ranges("mu"), thrown(seed=1, t=np.linspace(0.0, 60.0, 200)), starts=1
     ),
     "the data do not depend on mu: omega0 was taken as V0/R, without slip; give omega0": lambda: (

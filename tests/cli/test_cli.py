@@ -179,7 +179,7 @@ def test_material_fit(run, here):
     fit = vr.fit_prony(*record, source="dma.csv")
     assert report == f"{record}\n{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
-    assert "Prony series of 4 modes" in run(f"material fit {DATA} --modes 4 --misfit 0.05")
+    assert "; modes (terms): 4" in run(f"material fit {DATA} --modes 4 --misfit 0.05")
     assert f"measured from          {fit.measured}" in run("material show a.toml")
 
 
@@ -303,9 +303,9 @@ REFUSED = {
     "material fit rubber.toml --column storage": "argument --column: 'storage' must be "
     "NAME=HEADING, for example storage=Module 1",
     "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=HEADING",
-    "material fit dma.csv --mode shear": "mode = 'shear': must be 'tension', the mode of dma.csv",
+    "material fit dma.csv --mode shear": "mode = 'shear': must be 'tension', as read from dma.csv",
     "material fit dma.csv --column temperature=E_loss": "given for temperature, but its unit "
-    "'MPa' is not a unit of temperature: give the unit of its numbers, as units={'temperature'",
+    "'MPa' is not a unit of temperature: give the unit of the column, as units={'temperature'",
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",
     "tables law rubber.toml --alpha 1:2 -o law.nc": "which has a material of its own",
     "tables law --alpha low:high -o law.nc": "'low:high' must be LOW:HIGH",

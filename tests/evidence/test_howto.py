@@ -48,7 +48,7 @@ def test_the_page_of_measurements_runs(here, capsys):
             )
         assert not session[fit].misfit
     shown = capsys.readouterr().out
-    assert "Identification of 7 unknowns from 240 points" in shown
+    assert "Identification, unknowns: 7, points: 240" in shown
     assert "planned: expected standard deviations, if the cylinder has the true values" in shown
 
 

@@ -86,7 +86,7 @@ REFUSED = [
     *each(
         of_column,
         {
-            "line 4 ('x') is not a row of numbers": "V0;mu\n1;0.1\n2;0.2\nx",
+            "line 4 ('x') is not a line of numbers": "V0;mu\n1;0.1\n2;0.2\nx",
             "line 4 ('3') has 1 cells": "V0;mu\n1;0.1\n2;0.2\n3",
         },
         vr.FileError,
@@ -151,10 +151,10 @@ REFUSED = [
             "prony | one Prony series": lambda: vr.Material(1000000.0, 0.5, MANY),
             "high = 1.0 | >= low = 2": lambda: vr.Measured(2.0, 1.0, 0.0),
             "M_error is not in pairs": lambda: vr.Measured(1.0, 2.0, 0.0, M_error=1.0),
-            "rows (g_i, k_i, tau_i) | (1, 2)": lambda: vr.Material.abaqus(
+            "the columns g_i, k_i, tau_i; g has shape | (1, 2)": lambda: vr.Material.abaqus(
                 10000000.0, 0.49, [[0.2, 0.1]]
             ),
-            "temperature = -31.599 | nearer to T0 = 20.0 | beyond double precision": lambda: vr.WLF(
+            "temperature = -31.599 | nearer to T0 = 20.0 °C | is out of range": lambda: vr.WLF(
                 T0=20.0
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
@@ -174,25 +174,25 @@ REFUSED = [
         ),
         {
             "unknown | at least one name": {"unknown": {}},
-            "unknown E | (1e+06, 2e+06) | the value with which the search starts, 3e+06": {
+            "unknown E | (1e+06, 2e+06) | contains 3e+06, the value with which the search starts": {
                 "unknown": {"E": (1e6, 2e6)}
             },
             "standard deviation of prior E is in kPa: must be a number without dimension": {
                 "prior": {"E": (3e6, xr.DataArray(1.0, attrs={"units": "kPa"}))}
             },
-            "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
-            "more points, fewer unknowns": {"data": vr.Resistance(0.1, 0.1)},
+            "number of unknowns = 1: must be at most 0, as the number of points is 1 (the "
+            "estimate of a sigma that is not given takes one)": {"data": vr.Resistance(0.1, 0.1)},
             "name = 'a': must be different for each record": {
                 "data": [vr.Resistance(HUMP, sigma=0.1, name="a")] * 2
             },
-            "data has values in some records, but not in b: must be measured in all": {
+            "data has measured values in some records, but none in b: must be measured in all": {
                 "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
             },
             "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
-            "run: V0 | a number, as the record has no data that show it": {
+            "run: V0 | given, as the record has no data that show it": {
                 "data": [vr.Coastdown(TIMES, sigma=0.1)]
             },
-            "temperature = 60.0 | given with a shift of the body, as shift={'material': vr.WLF(": {
+            "temperature = 60.0 | unless the body has a shift: give it as shift={'material'": {
                 "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
             },
             "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},
@@ -240,7 +240,7 @@ REFUSED = [
     *each(
         vr.fit_prony,
         {
-            "loss has curves of [20] points: must be of as many as those of omega, [20, 20]": {
+            "loss has curves of [20] points: must be as many as omega has, [20, 20]": {
                 "omega": [OMEGA] * 2,
                 "storage": [DMA[1]] * 2,
                 "loss": [DMA[2]],
@@ -248,14 +248,14 @@ REFUSED = [
             },
             "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap; "
             "leave": {"temperature": [20.0, 0.0]},
-            "shift has several factors for one temperature (to 0.5 K): must be one for each": {
+            "shift has different factors for one temperature (to 0.5 K): must be one for each": {
                 "temperature": [20.0, 20.2],
                 "shift": [1.0, 1.1],
             },
             "temperature has shape (1,): must be one number for each of the 2 curves": {
                 "temperature": [20.0]
             },
-            "omega has no points for curve 2: must be one or more in each curve": {
+            "omega has no points for curve 2: must be a list with points for each curve": {
                 "omega": [DECADES, []],
                 "storage": [DECADES, []],
                 "loss": [DECADES, []],
@@ -298,12 +298,12 @@ REFUSED = [
     *each(
         vr.fit_prony,
         {
-            "omega | a vector": (1.0, 1.0, 1.0),
+            "omega | a list of numbers": (1.0, 1.0, 1.0),
             "omega | within a factor": ([1e-20, 1.0, 1e20], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]),
             "storage has no plateau at low frequencies (0.0001 at omega = 0.01): must be that "
             "of a solid, which": (DMA[0], DMA[0] ** 2, DMA[0]),
-            "storage is given: must be left out, since the result of read_dma contains it; write "
-            "modes=5": (vr.DynamicModuli(*DMA), 5),
+            "storage is given: must be left out, since the result of read_dma contains it; give "
+            "a number of terms": (vr.DynamicModuli(*DMA), 5),
             "storage or loss is not given": (DMA[0], DMA[1]),
         },
     ),
@@ -316,7 +316,7 @@ REFUSED = [
                 "temperature": [20.0],
             },
             "relaxation rises with time from 1.001 to 2: must be a relaxation modulus, which "
-            "falls (a creep": 2.0 - np.exp(-STEP),
+            "falls with time (a creep": 2.0 - np.exp(-STEP),
         },
     ),
     *each(
@@ -328,8 +328,8 @@ REFUSED = [
         {
             "other = <2 series | of one material": {"other": MANY},
             "series | a Prony series of one material": {"series": MANY},
-            "nu has shape (2,) | a number, or a list, one for each thickness": {"nu": [0.3, 0.4]},
-            "thickness has shape (2, 1): must be a number, or a list, one for each cover": {
+            "nu has shape (2,) | a number, or a list: one for each thickness": {"nu": [0.3, 0.4]},
+            "thickness has shape (2, 1): must be a number, or a list: one for each cover": {
                 "thickness": [[1.0], [2.0]]
             },
         },
@@ -368,7 +368,7 @@ REFUSED = [
                 0.1,
             ),
             "base = 11.0 | a Prony series": (MANY, 11.0),
-            "share | one for each pair": (MANY, MANY, [[0.1, 0.5]]),
+            "share | one number for each pair": (MANY, MANY, [[0.1, 0.5]]),
         },
     ),
     *each(
@@ -383,13 +383,13 @@ REFUSED = [
                 "temperature": 20.0,
                 "reference": 30.0,
             },
-            "shift = 1 at 0 °C and 10 at 20 °C | shift factors a_T (time divided by time at the "
-            "reference), which decrease with temperature (a list has the order of the curves)": {
+            "shift = 1 at 0 °C and 10 at 20 °C | shift factors a_T (relaxation time divided by "
+            "that at reference), which fall with temperature (a list has the order": {
                 "temperature": TWO,
                 "shift": [10.0, 1.0],
             },
-            "reference = 10.0: must be one of 0.0, 20.0 °C, whose factors shift lists; for others "
-            "give shift as a function": {
+            "reference = 10.0: must be one of 0.0, 20.0 °C, which have a factor in shift; for "
+            "others give shift as a function": {
                 "temperature": TWO,
                 "shift": [0.1, 1.0],
                 "reference": 10.0,

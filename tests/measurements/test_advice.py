@@ -49,13 +49,13 @@ def quoted(which):
 #: title -> the file, words of its refusal, and what its advice is; a refusal follows where words of
 #: it are given
 CASES = {
-    "a workbook": (
+    "a spreadsheet": (
         "PK\u0003\u0004",
-        "save its sheet as CSV",
+        "save the sheet as CSV",
         lambda text, *_: (rubbers.filled(RIGHT, {"sep": ";"}), {}),
     ),
-    "a gap": (RIGHT + "200;nan;2\n", "remove the row", without("200;nan")),
-    "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
+    "a gap": (RIGHT + "200;nan;2\n", "remove this line", without("200;nan")),
+    "a frequency of 0": (RIGHT + "0;3;2\n", "remove this line", without("0;3")),
     "words among the rows": (
         RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n",
         "remove it",
@@ -71,7 +71,7 @@ CASES = {
         "f [Hz];20;;30;\n;E' [MPa];E'' [MPa];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6; S/2e6; L/2e6>\n",
         "no column was found for frequency",
         give(columns={"frequency": "column 0"}),
-        "rename or remove one in the file",
+        "rename or remove one of",
     ),
     "different headings": (
         RIGHT + "f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n",
@@ -80,7 +80,7 @@ CASES = {
     ),
     "two tables, with temperatures": (
         RIGHT + RIGHT,
-        "write 'Temperature 20 °C' above each",
+        "above each, as 'Temperature 20 °C'",
         change("f [Hz]", "Temperature 20 °C\nf [Hz]"),
     ),
     "temperatures that are not understood": (
@@ -100,19 +100,19 @@ CASES = {
     ),
     "a unit that is not known": (
         "f [Schlag/min];E' [MPa];E'' [MPa]\n<60*f; S/1e6; L/1e6>\n",
-        "is not a unit of frequency: give the unit of its numbers, as units=",
+        "is not a unit of frequency: give the unit of the column, as units=",
         give(units={"frequency": "rpm"}),
     ),
     "a unit of another dimension, named": (
         "f [Hz];S1 [N/mm];S2 [N/mm]\n<f; S/1e6; L/1e6>\n",
-        "'N/mm' is not a unit of storage: give the unit of its numbers, as units=",
+        "'N/mm' is not a unit of storage: give the unit of the column, as units=",
         give(units={"storage": "MPa", "loss": "MPa"}),
         {"storage": "S1 [N/mm]", "loss": "S2 [N/mm]"},
     ),
     **{
         f"a factor, named: {factor}": (
             f"f [Hz];E' {factor};E'' {factor}\n<f; S/1e6; L/1e6>\n",
-            "is not a unit of storage: give the unit of its numbers, as units=",
+            "is not a unit of storage: give the unit of the column, as units=",
             give(units={"storage": "MPa", "loss": "MPa"}),
             {"storage": f"E' {factor}", "loss": f"E'' {factor}"},
         )
@@ -125,19 +125,19 @@ CASES = {
     ),
     "an angular frequency in Hz": (
         "Angular frequency [Hz];E' [MPa];E'' [MPa]\n<w; S/1e6; L/1e6>\n",
-        "or give the unit of its numbers, as units=",
+        "or give the unit of the column, as units=",
         give(units={"angular frequency": "rad/s"}),
     ),
     "frequencies that contradict, the second": (
         "Angular frequency [1/s];Frequency [Hz];E' [MPa];E'' [MPa]\n<f; f; S/1e6; L/1e6>\n",
-        "choose by",
+        "choose one by",
         quoted(1),
     ),
     "a phase angle that is wrong": (
         "f [Hz];Phase [rad];E' [MPa];E'' [MPa];tan_delta\n<f; 0.9*tan; S/1e6; L/1e6; tan>\n",
-        "choose by",
+        "choose one by",
         quoted(0),
-        "tan delta contradicts storage and loss",
+        "tan delta disagrees with storage and loss",
     ),
     "a tan delta in per cent beside moduli": (
         "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 100*tan>\n",
@@ -157,12 +157,12 @@ CASES = {
     ),
     "logarithms": (
         "f,Storage,Loss\n<log(f); log(S); log(L)>\n",
-        "if these are logarithms, write log before the heading",
+        "if the column has logarithms, write log before its",
         change("f,Storage,Loss", "log f (Hz),log Storage (Pa),log Loss (Pa)"),
     ),
     "four columns without headings": (
         "<n; f; S/1e6; L/1e6>\n",
-        "have the headings 'column 0', 'column 1'",
+        "with 'column 0', 'column 1'",
         give(
             columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"},
             units=("Hz", "MPa"),
@@ -175,7 +175,7 @@ CASES = {
     ),
     "a sweep of temperature": (
         "T [°C];E' [MPa];E'' [MPa]\n<20+n; S/1e6; L/1e6>\n",
-        "a sweep of temperature",
+        "temperature sweeps cannot be used",
         give(columns={"frequency": "T [°C]"}),
         "is not a unit of frequency",
     ),

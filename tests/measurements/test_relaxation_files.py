@@ -54,19 +54,17 @@ REFUSED = each(
         "no column was found for the relaxation modulus | 'Force [N]'": (
             "Time [s];Force [N]\n1;2\n2;1\n"
         ),
-        "unit 'Hz' is not a unit of time: give the unit of its numbers, as units={'time'": (
+        "unit 'Hz' is not a unit of time: give the unit of the column, as units={'time'": (
             "Time [Hz];E(t) [MPa]\n1;2\n2;1\n"
         ),
-        "line 2 (0; 2): the time must be > 0 and finite: correct or remove the row": (
+        "line 2 (0; 2): the time must be > 0 and finite: correct or remove this line": (
             "Time [s];E(t) [MPa]\n0;2\n2;1\n"
         ),
         "'Strain' has no unit | units={'strain': '%'}": (
             "Time [s];Stress [MPa];Strain\n1;2;5\n2;1;5\n"
         ),
-        "at 20 to 40 °C, and must be at one temperature: keep": (
-            "Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n"
-        ),
-        "line 4 (1; 1): an earlier row has the same time | temperatures differ, give each a file": (
+        "at 20 to 40 °C: keep the lines of": ("Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n"),
+        "line 4 (1; 1): an earlier line has the same time | differs, make a file for each": (
             "Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n"
         ),
         "looks like temperatures | columns={'temperature'": (

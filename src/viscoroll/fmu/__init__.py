@@ -378,9 +378,9 @@ def build(
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
-        found = "a table of pressure and shear solved together, which an FMU cannot contain"
-        allowed = "its Cylinder (the FMU then has the fast law); tables.export writes a table as C"
-        sentence = f"the law that is given is {found}: must be {allowed}"
+        found = "that of the coupled solution of pressure and shear, which an FMU cannot contain"
+        allowed = "give the roller (its FMU has the fast law), or export the law as C code"
+        sentence = f"the contact law that is given is {found}: {allowed}"
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)  # which warns of a Cylinder
     table = parse_law(dataset_content(law), path)
@@ -394,13 +394,13 @@ def build(
     starts = _start_values(about.variables, given, table, l0)
     if table.cover and not isinstance(given, Cylinder):
         warn_of_model(
-            "the FMU has the fast law (coupled=False) in place of the solution of pressure and "
-            "shear together: validity(V).traction of a Cylinder of these materials states the error"
+            "the FMU has the fast law (coupled=False) in place of the coupled solution of pressure "
+            "and shear.  validity(V).traction of a Cylinder of these materials states the error"
         )
     fmpy = import_extra("fmpy", "fmu")
     compiler = shutil.which("cc")
     if compiler is None:
-        raise MissingDependencyError("cc, a compiler of C (as gcc or clang),", None)
+        raise MissingDependencyError("the command cc, a C compiler such as gcc or clang,", None)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         tables.export(law, folder / "law.h")

@@ -362,7 +362,7 @@ def temperature(
     driven = {name: plain[name] for name in driven}
     loaded = any(value is not None for value in driven.values())
     if V is None and not loaded:
-        raise described_error("V", "is not given", "given, or a force, torque or slope")
+        raise described_error("V", "is not given", "given, or a force, torque or slope instead")
     beside = driven if loaded and V is not None else None
     states = heat_states(roller, "temperature", plain, slip_share, beside)
     if states.V is None:
@@ -388,7 +388,9 @@ def _under_load(
     Raises ParameterError for a material with a vertical shift, and as :func:`viscoroll.steady`.
     """
     if states.body.material.vertical_shift is not None:
-        raise described_error("vertical_shift", "is given", "left out unless V is given too")
+        raise described_error(
+            "vertical_shift", "of the Material is given, but V is not", "left out, or V given too"
+        )
     # in the shape of all states, as ambient and conductance may have axes that the loads lack
     force = np.broadcast_to(0.0 if driven["force"] is None else driven["force"], states.shape)
     with warnings.catch_warnings():
@@ -435,20 +437,20 @@ def _reasons(
         own = np.flatnonzero(zeros.state == n)
         if not own.size:
             found[n] = (
-                f"loss and heat given off are equal at no temperature up to {HOTTEST:g} °C: the "
-                "roller warms without limit, or no speed is steady"
+                f"at no temperature up to {HOTTEST:g} °C does the roller give off as much heat as "
+                "its loss: it warms without limit, or it cannot roll at a steady speed"
             )
             continue
         at = own[np.argmin(zeros.theta[own])]
         where = (
-            f"above {states.curve.high:g}, up to which the shift of the material is defined"
+            f"but the shift of the material is defined only up to {states.curve.high:g} °C"
             if not np.isfinite(rows["a_T"][at])
-            else "but friction is too small there for the force or torque"
+            else "but mu is too small there for the force, torque or slope"
             if not known[at]
-            else "where the transit frequency (speed divided by contact length) lies outside the "
-            "frequencies at which the material was measured"
+            else "but the material was not measured at the transit frequency of that state (speed "
+            "divided by contact length)"
         )
-        found[n] = f"loss and heat given off are equal at {zeros.theta[at]:.5g} °C, {where}"
+        found[n] = f"the heat given off equals the loss at {zeros.theta[at]:.5g} °C, {where}"
     return found
 
 
@@ -524,16 +526,16 @@ def pair_temperatures(
     if pair is None or scene.shape or pair.covered or 1.0 in [b.prony.alpha for b in pair.bodies]:
         raise described_error(
             "roller",
-            "has arrays, a thickness, an elastic or rigid body or no Material",
-            "a Cylinder of Materials that both relax, without thickness and arrays; if one alone "
-            "relaxes call vr.temperature",
+            "has arrays, a thickness, an elastic or rigid body, or no Material",
+            "a Cylinder with two viscoelastic Materials without thickness, and no arrays; if only "
+            "one body is viscoelastic, call vr.temperature",
         )
     V = check_number("V", V, unit=scale)
     speed = abs(V)
     around = check_both("ambient", ambient, unit="degC")
     off = check_both("conductance", conductance, unit="W m-1 K-1", above=0.0)
     if not speed:
-        raise described_error("V", "is 0, where the bodies stay cold", "other than 0")
+        raise described_error("V", "is 0, so that rolling makes no heat", "other than 0")
     curves = [shift_curve(body) for body in pair.bodies]
     for at, curve in zip(around, curves):
         check_ambient(at, curve, "ambient")

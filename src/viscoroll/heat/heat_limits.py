@@ -141,7 +141,7 @@ def heat_limit(
     check_ambient(allowed, curve, "allowed")
     value = check_array(name, plain[name])
     if name == "V" and not value.all():
-        raise described_error("V", "is 0, where the roller stays cold", "other than 0")
+        raise described_error("V", "is or contains 0, where rolling makes no heat", "other than 0")
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
         raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g} °C")
     arrays = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
@@ -383,13 +383,13 @@ def conductance(
         raise described_error(
             "core",
             "is 'cooled', but thickness and conductivity of the cover are not both given",
-            "'insulated', unless both are given",
+            "'insulated', or given with both",
         )
     if h is not None and np.any(h >= arrays["R"]):
         raise ParameterError(
             "thickness",
             format_value(h),
-            f"below R = {format_value(R)}, the radius of the surface of the cover",
+            f"below R = {format_value(R)}, the outer radius of the cover (both in m)",
         )
     # circumference at the middle of the cover; of the surface where nothing is conducted
     width = 2.0 * math.pi * (arrays["R"] - 0.5 * h if is_conducting else arrays["R"])
@@ -444,9 +444,9 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
     return Assumption(
         biot <= BIOT_LIMIT,
         biot,
-        f"the Biot number (film times thickness divided by conductivity) is {biot:.2g}: the "
-        f"hottest point warms {above:.2g} % more than the mean; up to {BIOT_LIMIT}, where that is "
-        "10 %, one temperature stands for the body",
+        f"the Biot number (film times thickness divided by conductivity) is {biot:.2g}, so that "
+        f"the hottest point warms {above:.2g} % more than the mean.  One temperature is enough for "
+        f"the cover up to a Biot number of {BIOT_LIMIT}, which means 10 % more",
     )
 
 
@@ -525,7 +525,7 @@ def warming(
     theta = states.start
     times = check_array("t", t, unit=scale, low=0.0)
     if times.ndim != 1 or not times.size:
-        raise shape_error("t", times.shape, "a list of one time or more")
+        raise shape_error("t", times.shape, "a list of at least one time")
     if (np.diff(times) <= 0.0).any():
         raise described_error("t", "does not ascend", "in ascending order")
     speed, corners = _speed_of(V, scale)
@@ -552,8 +552,8 @@ def warming(
         if not found.success:
             raise described_error(
                 "V",
-                f"makes the temperature run away between t = {span[0]:g} and {span[1]:g} s",
-                "lower; or lower the load, or end t earlier",
+                f"makes the temperature rise without limit from t = {span[0]:g} to {span[1]:g} s",
+                "lower; or lower the load, or end t before the rise",
             )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])
@@ -563,7 +563,7 @@ def warming(
         raise described_error(
             "temperature",
             f"of the roller rises to {hot:.5g} degrees Celsius",
-            f"at most {states.curve.high:g}, up to which the shift of its material is defined",
+            f"at most {states.curve.high:g}, where the shift of its material ceases to be defined",
         )
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
     rows = states.fields(np.repeat(every, times.size), course.ravel(), V_t)

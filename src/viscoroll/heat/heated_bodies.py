@@ -175,7 +175,7 @@ def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
         raise ParameterError(
             "shift",
             None,
-            "given to the Material that relaxes, as vr.WLF(...), in a file as key wlf or arrhenius",
+            "given to the viscoelastic Material, as vr.WLF(...); in a file as key wlf or arrhenius",
         )
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
         pole = shift.pole
@@ -201,8 +201,8 @@ def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
     if (rises := np.flatnonzero(np.diff(log2) > _ROUNDING)).size:
         raise described_error(
             "shift",
-            f"rises at {theta[rises[0]]:.4g} degrees Celsius",
-            "a function that does not rise with temperature",
+            f"rises with the temperature at {theta[rises[0]]:.4g} degrees Celsius",
+            "a function (a shift factor) that nowhere rises with the temperature",
         )
     # log2 a_T falls: reversed it ascends, as interpolation requires
     slopes = np.diff(log2) / np.diff(theta)
@@ -242,7 +242,7 @@ def _sampled(shift: Any, reference: float | None, vertical: Any) -> tuple[Floats
     if unknown.size == theta.size:
         raise described_error(
             "shift",
-            "is not defined at the temperature of the material",
+            "is not defined at the reference temperature of the material",
             "a function that returns a number > 0 there",
         )
     own = np.nanargmin(np.abs(np.log(a_T)))  # at the reference a_T is 1
@@ -437,16 +437,16 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     if pair is None:
         raise described_error(
             "roller",
-            f"given to {call} has no Material",
-            "a Cylinder(material=Material(..., shift=...)), as a Scene and a Cylinder by E, nu, "
-            "T_epsilon and T_sigma have no temperature",
+            f"given to vr.{call} has no Material",
+            "a Cylinder(material=Material(..., shift=...)), since a Scene, or a Cylinder made of "
+            "E, nu, T_epsilon and T_sigma, has no temperature",
         )
     bodies = (pair.cylinder, slip_share), (pair.half_space, 1.0 - slip_share)
     # all loss in rolling is that of the body that relaxes, if there is one alone
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
     if not found:
         raise described_error(
-            "material", "does not relax, and rolls without loss", "one with a Prony series"
+            "material", "and base are elastic or rigid, and roll without loss", "viscoelastic"
         )
     # each has half of both losses, at one temperature; equal series are not enough for that
     same = "thickness", "temperature", "shift", "vertical_shift"
@@ -456,9 +456,9 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     if len(found) > 1:
         raise described_error(
             "base",
-            "relaxes too",
-            "elastic, rigid, or of the same material, thickness, reference temperature and shift; "
-            "for two half-spaces that relax call vr.pair_temperatures",
+            "is viscoelastic too, and differs from material",
+            "elastic, rigid, or the same material with equal thickness, temperature and shift; "
+            "for two different viscoelastic half-spaces call vr.pair_temperatures",
         )
     return found[0]
 
@@ -509,9 +509,9 @@ def heat_states(
     if vertical and (covered or (remade and driven is not None)):
         raise described_error(
             "vertical_shift",
-            "is given",
-            "left out for a cover and, where a force, torque or slope is given, beside an elastic "
-            "body: the law would be another one at each temperature",
+            "of the Material is given",
+            "left out for a cover, and for a half-space on an elastic body under a force, torque "
+            "or slope: the contact law would differ at each temperature",
         )
     several = scene.material_array
     index: Any = 0.0 if several is None else np.arange(float(len(several)))
@@ -559,7 +559,7 @@ def check_ambient(ambient: Any, curve: ShiftCurve, name: str) -> None:
         if not curve.low <= at <= curve.high:
             raise described_error(
                 name,
-                f"= {at:g} degrees Celsius is outside the range of the shift of the material",
+                f"= {at:g} degrees Celsius is outside the range of the material's shift factors",
                 f"from {curve.low:g} to {curve.high:g} degrees Celsius",
             )
 

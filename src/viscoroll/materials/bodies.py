@@ -108,7 +108,9 @@ class Bodies(OneOrMany):
             vars(self)["poisson"] = tuple(values.tolist())
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
-            raise shape_error("share", share.shape, "a number, or a list, one for each pair")
+            raise shape_error(
+                "share", share.shape, "a number, or a list with one number for each pair"
+            )
         vars(self)["shape"] = broadcast_shape(**bodies, share=share)
         modes = sum(body.E.shape[-1] for body in bodies.values())
         if self.shape and modes > MOST_MODES:
@@ -258,7 +260,7 @@ class Bodies(OneOrMany):
         """Return the call that makes the pair; of many pairs their number and those of modes."""
         if self.shape:
             one, other = (body.E.shape[-1] for body in (self.cylinder, self.base))
-            return f"<{len(self)} pairs, with {one} modes of the cylinder and {other} of the base>"
+            return f"<{len(self)} pairs, Prony terms of the cylinder: {one}, of the base: {other}>"
         poisson = "" if self.poisson is None else f", poisson={self.poisson!r}"
         return (
             f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r}{poisson})"
@@ -418,17 +420,17 @@ class Cover(Bodies):
         part = check_number("part", part, above=0.0, high=1.0)
         given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
         if given.ndim > 1:
-            raise shape_error("thickness", given.shape, "a number, or a list, one for each cover")
+            raise shape_error("thickness", given.shape, "a number, or a list: one for each cover")
         if ratio.shape not in ((), given.shape):
-            raise shape_error("nu", ratio.shape, "a number, or a list, one for each thickness")
+            raise shape_error("nu", ratio.shape, "a number, or a list: one for each thickness")
         if other_thickness is not None:
             second = check_array("other_thickness", other_thickness, above=0.0, high=_THICKEST)
             if part == 1.0:
                 raise ParameterError(
                     "other_thickness",
                     second,
-                    "left out, or part < 1 be given: at part = 1, the default, the other body is "
-                    "rigid",
+                    "left out, or given with part < 1: at part = 1, the default, the other body "
+                    "is rigid",
                 )
             if second.shape != given.shape:
                 raise shape_error("other_thickness", second.shape, f"{given.shape}, as thickness")
@@ -438,7 +440,7 @@ class Cover(Bodies):
                 raise described_error(
                     "other_thickness",
                     f"is {proportion.min():.9g} to {proportion.max():.9g} times thickness",
-                    "the same multiple for all covers",
+                    "the same multiple of thickness for all covers",
                 )
             other_thickness = read_only(second)
         cylinder, base = (series, other) if on == "cylinder" else (other, series)

@@ -196,7 +196,7 @@ def is_law(path: FilePath) -> bool:
     Raises FileError as :func:`read_content`.
     """
     content = read_content(
-        path, "file of a material or a law", f"{_REWRITE}, or a law by vr.tables.save"
+        path, "file of a material or of a contact law", f"{_REWRITE}, or a law by vr.tables.save"
     )
     return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 
@@ -211,7 +211,7 @@ def read_law(path: FilePath) -> Content:
     netCDF, is no law, is of another schema, lacks a variable, or has one that is not numeric.
     """
     content = read_content(
-        path, "law (of `viscoroll tables law`) or a grid (of `viscoroll tables build`)", REMEDY
+        path, "law (made by `viscoroll tables law`) or a grid (`viscoroll tables build`)", REMEDY
     )
     check_law(content, path)
     return content
@@ -275,25 +275,27 @@ def check_law(content: Content, path: Any) -> None:
     if kind not in KINDS:
         raise FileError(
             path,
-            "is neither a law (`viscoroll tables law`) nor a grid, which has variables V, delta, Q",
+            "is neither a law (of `viscoroll tables law`) nor a grid (of `viscoroll tables build`)",
         )
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
-        problem = f"has law_schema = {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
-        raise FileError(path, f"{problem}; {REMEDY}, or use the version that wrote it")
+        problem = f"has law_schema {schema!s:.20}, but viscoroll {__version__} reads only {VERSION}"
+        raise FileError(path, f"{problem}; {REMEDY}, or use the version of viscoroll that wrote it")
     for name in ("title", "source", "material")[: 2 if kind == AXIS else 3]:
         if not isinstance(attributes.get(name), str):
-            raise FileError(path, f"is an incomplete law without attribute {name}; {REMEDY}")
+            raise FileError(path, f"is incomplete: its attribute {name!r} is missing; {REMEDY}")
     try:
         found = checksum(numbers, kind)
     except KeyError as error:
-        raise FileError(path, f"is an incomplete law without variable {error}; {REMEDY}") from error
+        raise FileError(
+            path, f"is incomplete: its variable {error} is missing; {REMEDY}"
+        ) from error
     except ValueError:  # a variable that is not numeric
         found = ""
     if found != attributes.get(CHECKSUM):
         raise FileError(
             path,
-            "is damaged or was edited: its numbers do not have the checksum that it states; "
+            "is damaged or was edited: its numbers do not match the checksum in the file; "
             f"{REMEDY}",
         )
 
@@ -379,9 +381,9 @@ def write_material(material: Any, path: FilePath) -> None:
     shifts = (material.shift, material.vertical_shift)
     if len(data.attrs["shifts"].splitlines()) < sum(shift is not None for shift in shifts):
         warn_of_model(
-            f"{path} does not hold the shift with temperature: files hold WLF, Arrhenius and the "
-            'vertical shift "entropic" alone.  Fit one (ShiftFactors.wlf or .arrhenius), or give '
-            "the shift again after reading: dataclasses.replace(material, shift=...)"
+            f"{path} lacks a shift of the material: files can store WLF or Arrhenius as shift, and "
+            "'entropic' as vertical_shift.  Give others again after reading, by dataclasses.replace"
+            "(material, shift=...), or fit WLF or Arrhenius (ShiftFactors.wlf, .arrhenius)"
         )
     write_dataset(data, path, sealed=True)
 
@@ -414,21 +416,23 @@ def load_material(path: FilePath, make: Any) -> Any:
     """
     numbers, about = read_content(path, "material that Material.to_netcdf wrote", _REWRITE)
     if str(about.get(KIND)) in KINDS:
-        raise FileError(path, f"is a law, not a material: read it by vr.load_law, or {_REWRITE}")
+        raise FileError(
+            path, f"is a contact law, not a material: read it by vr.load_law, or {_REWRITE}"
+        )
     if {"V", "Q"} <= numbers.keys():
         raise FileError(
             path,
-            "is a grid or a result, not a material: read a grid by vr.load_law or vr.tables.load",
+            "is a grid or a result, not a material: give a file that Material.to_netcdf wrote",
         )
     if about.get("schema") != _SCHEMA:
         raise FileError(
-            path, f"has attribute schema = {about.get('schema')!r:.40}, not {_SCHEMA!r}; {_REWRITE}"
+            path,
+            f"has the schema {about.get('schema')!r:.40}, but must have {_SCHEMA!r}; {_REWRITE}",
         )
     if seal_matches(pathlib.Path(path).read_bytes()) is None:
         raise FileError(
             path,
-            "is cut, or was written by another program than viscoroll (no checksum at its end); "
-            f"{_REWRITE}",
+            f"is cut, or was not written by viscoroll (it has no checksum at its end); {_REWRITE}",
         )
     given: Any = about.get("given")
     if given not in _FORMS:
@@ -459,6 +463,8 @@ def load_material(path: FilePath, make: Any) -> Any:
     except ParameterError as error:
         raise FileError(path, f"has a wrong value ({error}); {_REWRITE}") from error
     except KeyError as error:
-        raise FileError(path, f"is incomplete, as {error} is missing; {_REWRITE}") from error
+        raise FileError(
+            path, f"is incomplete: the variable or attribute {error} is missing; {_REWRITE}"
+        ) from error
     except (TypeError, ValueError) as error:
         raise FileError(path, f"has variables or attributes of a wrong type; {_REWRITE}") from error

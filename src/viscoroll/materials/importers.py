@@ -111,12 +111,12 @@ class FromPrograms:
                     "tau",
                     None,
                     "one time for each g",
-                    "tau is not given: give a tau for each g, or the table of *VISCOELASTIC as g, "
-                    f"with rows (g_i, k_i, tau_i); g has shape {table.shape}",
+                    "tau is not given: give one tau for each g; or as g the table *VISCOELASTIC, "
+                    f"with the columns g_i, k_i, tau_i; g has shape {table.shape}",
                 )
             if k is not None:
                 raise ParameterError(
-                    "k", k, "left out where g has rows (g_i, k_i, tau_i), which contain it"
+                    "k", k, "left out, since g is a table that contains it (g_i, k_i, tau_i)"
                 )
             g, k, tau = table.T
         long_term = check_bool("long_term", long_term)
@@ -463,8 +463,8 @@ def _warn_of_low_poisson(G_inf: float, G: Floats, K_inf: float, K: Floats, tau: 
     if lowest < _LEAST_POISSON:
         warn_of_model(
             f"shear and bulk terms give Poisson's ratio {lowest:.3g} at some time, and no rubber "
-            f"has less than {_LEAST_POISSON:g}: check that both are in the same unit, as fractions "
-            "of moduli for abaqus and ansys, as moduli in Pa for comsol and lsdyna"
+            f"has less than {_LEAST_POISSON:g}: check that both are fractions of moduli (abaqus, "
+            "ansys), or both moduli in Pa (comsol, lsdyna)"
         )
 
 
@@ -519,7 +519,7 @@ def _long_time_shear(
             "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0",
         )
     name, value = given.popitem()
-    named = {"G0": "G0 - sum of G (at long times)", "beta = 0": "G of beta = 0 (at long times)"}
+    named = {"G0": "long-time modulus G0 - sum of G", "beta = 0": "G of beta = 0 (long times)"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
 

@@ -112,7 +112,7 @@ class Material(FromPrograms):
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             values["E"] = math.inf
             if self.prony.alpha > 1.0:
-                raise ParameterError("E", self.E, "finite for a viscoelastic material (inf: rigid)")
+                raise ParameterError("E", self.E, "finite for a viscoelastic body (inf: rigid)")
             if self.thickness is not None:
                 raise ParameterError("thickness", self.thickness, "left out for a rigid body")
         else:
@@ -305,9 +305,9 @@ class Material(FromPrograms):
             raise shape_error(
                 "temperature",
                 given.shape,
-                "one number, as a material has one temperature: make a list, [rubber.at(T, shift) "
-                "for T in temperatures], or write a run file, in which temperature of [material] "
-                "may be a column or a distribution (docs/ensembles.md)",
+                "one number, as a material has one temperature: make a list of materials, as "
+                "[rubber.at(T, shift) for T in temperatures], or write a run file, where "
+                "temperature in [material] may be a column or a distribution (docs/ensembles.md)",
             )
         temperature = check_celsius("temperature", float(given))
         factor = relative_shift(shift, temperature, self.temperature)

@@ -184,7 +184,7 @@ def material_as_toml(material: Material, section: str = "material") -> str:
         f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = "
         f"{_quote(band.source)}{strain}"
         f"{f', M_error = {[list(pair) for pair in band.M_error]}' * bool(band.M_error)} }}"
-        "  # low, high: rad/s; M_error: pairs of a transit frequency, 1/s, and relative error of M"
+        "  # low, high: rad/s; M_error: pairs of transit frequency, 1/s, and relative error of M"
     )
     values |= shifts_as_toml(material.shift, material.vertical_shift)
     lines = [f"{name} = {value}" for name, value in values.items() if value is not None]
@@ -230,8 +230,8 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
             path,
             name,
             key,
-            f"{key} must be left out beside the key file: to change {key}, write the keys of the "
-            "material (E, nu, ...) here in place of file",
+            f"{key} must be left out, since the key file gives the whole material: to change "
+            f"{key}, remove file, and write all keys of the material (E, nu, ...) here",
         )
     return as_struct(path, name, content, FileSection)
 
@@ -273,7 +273,7 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
                 path,
                 name,
                 "temperature",
-                f"temperature = {temperature:g}: needs wlf or arrhenius too, to shift the times",
+                f"temperature = {temperature:g} needs wlf or arrhenius too, which shift the times",
             )
         return material.at(temperature)
 
@@ -300,14 +300,14 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
                 other,
                 section,
                 "file",
-                "names another file by the key file: write E, nu, ... there in its place",
+                "must not have the key file too: write E, nu, ... of the material in its place",
             )
         return _parse_material(other, section, content[section])
     except FileError as error:
         advice = (
             ""
             if other.suffix.lower() in (SUFFIX, ".toml")
-            else "; it must be a .toml with [material], or the .nc of a material or its law"
+            else "; it must be a .toml with [material], or the .nc of a material or contact law"
         )
         raise section_error(
             path, name, "file", f"the key file names a file that cannot be used ({error}){advice}"
@@ -329,14 +329,14 @@ def _material_of_law(path: Path) -> Material:
     if not content.keys() & set(SECTIONS):
         raise FileError(
             path,
-            "is the law of a material without units: it must be that of a Material in SI units, as "
-            "`viscoroll tables law` makes it of a file with [material]",
+            "is a dimensionless contact law: it must be that of a material in SI units, which "
+            "`viscoroll tables law` makes from a file with [material]",
         )
     if "base" in content:
         raise FileError(
             path,
-            "is the law of a pair of materials: it must be that of one material (in Python the law "
-            "of a pair is read by vr.load_law, as material= of a Cylinder)",
+            "is the contact law of two materials: it must be that of one material (in Python, "
+            "vr.load_law reads this file, for material= of a Cylinder)",
         )
     return parse_materials(path, content)["material"]
 
@@ -371,8 +371,8 @@ def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
                 path,
                 name,
                 "",
-                "T_epsilon and T_sigma (s), a standard linear solid, must be given together, "
-                "and without T_ref, prony and creep",
+                "T_epsilon and T_sigma (in s; a standard linear solid) must both be given, and "
+                "T_ref, prony and creep left out",
             )
         return Material.sls(**given)
     return Material(**given)

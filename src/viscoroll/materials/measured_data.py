@@ -77,7 +77,7 @@ class _ShiftLaw:
         exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
         if not abs(exponent) < 700.0:
             allowed = (
-                f"nearer to T0 = {self.T0}, as a_T = exp({exponent:.3g}) is beyond double precision"
+                f"nearer to T0 = {self.T0} °C: the shift factor exp({exponent:.3g}) is out of range"
             )
             raise ParameterError("temperature", temperature, allowed)
         return math.exp(exponent)
@@ -231,8 +231,8 @@ class ShiftFactors:
             raise ParameterError(
                 "temperature",
                 temperature,
-                f"in [{low - NEAR}, {high + NEAR}] °C, near to found factors; for others use the "
-                "law that wlf() or arrhenius() of these factors returns",
+                f"from {low - NEAR} to {high + NEAR} °C, the range of the factors; for others use "
+                "the WLF or Arrhenius law that .wlf() or .arrhenius() of these ShiftFactors fits",
             )
         if low == high:
             return self.a_T[0]
@@ -340,8 +340,8 @@ class ShiftFactors:
         first to the last.
         """
         if len(self.a_T) < fewest:
-            allowed = f"one of at least {fewest} temperatures, to fit this law"
-            raise described_error("temperature", f"is a list of {len(self.a_T)}", allowed)
+            allowed = f"a list of at least {fewest} temperatures, to fit this law"
+            raise described_error("temperature", f"has length {len(self.a_T)}", allowed)
         if not self.a_T[-1] < self.a_T[0]:
             found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
             raise ParameterError("a_T", found, "shift factors that fall with temperature")
@@ -355,7 +355,7 @@ class ShiftFactors:
         worst = int(np.argmax(np.abs(errors)))
         if abs(errors[worst]) > _FAR_OFF:
             warn_of_model(
-                f"{law} gives {10.0 ** errors[worst]:.3g} times the shift factor that was found at "
+                f"the fitted {law} gives {10.0 ** errors[worst]:.3g} times the factor found at "
                 f"{self.temperature[worst]:g} °C: use the found factors in place of this law"
             )
         return law
@@ -374,8 +374,8 @@ def check_celsius(name: str, temperature: Any) -> float:
     low, high = USUAL_RANGE
     if not low <= found <= high:
         warn_of_model(
-            f"{name} is outside {low:g} to {high:g}: the unit is degrees Celsius, and this "
-            "looks like kelvin, or like a value that was converted twice"
+            f"{name} is outside {low:g} to {high:g} degrees Celsius: the number looks "
+            "like kelvin, or like a value that was converted twice"
         )
     return found
 
@@ -424,7 +424,7 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
         raise ParameterError(
             "temperature",
             None,
-            "given to a Material that has vertical_shift, as the temperature of its moduli",
+            "given to a Material with vertical_shift: the temperature at which E was measured",
         )
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
     factor, unit = (
@@ -501,8 +501,8 @@ class Measured:
         check_text("source", self.source)
         pairs = check_array("M_error", self.M_error, low=0.0)
         if pairs.size % 2 or not (np.diff(pairs.ravel()[::2]) > 0.0).all():
-            allowed = "pairs (transit frequency in 1/s, relative error of M), by rising frequency"
-            raise described_error("M_error", "is not in pairs, or not sorted", allowed)
+            allowed = "pairs (transit frequency in 1/s, relative error of moment M), ascending"
+            raise described_error("M_error", "is not in pairs, or not sorted by frequency", allowed)
         vars(self)["M_error"] = tuple(map(tuple, pairs.reshape(-1, 2).tolist()))
         if self.strain is not None:
             check_fields(self, "strain", unit="1")
@@ -592,7 +592,7 @@ class Measured:
         """Return band, misfit, accuracy of M and source in one line."""
         source = f" ({self.source})" if self.source else ""
         errors = [100.0 * error for _, error in self.M_error]
-        M = f", accuracy of moment M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
+        M = f", error of moment M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
         return (
             f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %"
             f"{M}{source}"

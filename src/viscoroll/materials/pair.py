@@ -89,19 +89,21 @@ class Pair:
                     name, describe_value(body), "a Material, as vr.Material(E=..., nu=...)"
                 )
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
-            raise ParameterError("base", "rigid", "a deformable body, since the cylinder is rigid")
+            raise ParameterError(
+                "base", "rigid", "a deformable body, since material (the cylinder) is rigid"
+            )
         if self.covered is not None and self.plane != "strain":
             raise ParameterError(
-                "plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)"
+                "plane", repr(self.plane), "'strain' where a material has a thickness"
             )
         for body in self.bodies:
             half_space = body.thickness is None and self.plane == "strain"
             if body.nu_instant is not None and not half_space:
                 raise described_error(
                     "nu_instant",
-                    "is given, as by bulk terms unlike those of shear, and the series of such a "
-                    "material is that of a half-space in plane strain",
-                    "left out (bulk terms too) for a layer and in plane stress",
+                    "is given (or follows from bulk terms unlike those of shear), but holds only "
+                    "for a half-space in plane strain",
+                    "left out, and the bulk terms too",
                 )
 
     @property
@@ -196,8 +198,8 @@ class Pair:
             raise described_error(
                 f"thickness of the {self.covered}",
                 "is given",
-                "left out here, as the law of a layer depends on load and radius too; give a "
-                "Cylinder of these materials",
+                "left out here, since the contact law of a cover depends on load and radius too; "
+                "give a Cylinder of these materials, or a file with [cylinder]",
             )
         if self.like:
             return self.cylinder.prony
@@ -238,17 +240,17 @@ class Pair:
         found = "has several values"
         if layer.prony.shape:
             raise described_error(
-                f"the Prony series of the cover ({on})",
+                f"the Prony series of the cover (of the {on})",
                 found,
-                "one for all cylinders (thickness, load and R may differ, and beside a rigid body "
-                "E and nu)",
+                "the same for all cylinders (thickness, load and R may differ; E and nu too if the "
+                "other body is rigid)",
             )
         if np.ptp(parts) > 0.0:
             raise described_error(
                 "E or nu of a body",
                 found,
-                "one for all cylinders where a cover lies beside a body that is not rigid: let "
-                "thickness, load or R differ, or make that body rigid (E = inf)",
+                "the same for all cylinders, as one body has a cover and the other is not rigid: "
+                "let thickness, load or R differ, or make the other body rigid (E = inf)",
             )
         # both in the unit of time of the pair
         series, other_series = (
@@ -295,7 +297,7 @@ class Pair:
                 "material",
                 f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}",
                 f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
-                "contact length at rest of half-spaces); make the law with this load and R",
+                "contact length at rest of half-spaces); make the law again with this load and R",
             )
 
     def refuse_coupled_ratios(self, law: Prony | Bodies | Cover, limit: float) -> None:
@@ -352,9 +354,9 @@ def several_tables_error(name: str, one: str) -> ParameterError:
     """
     return described_error(
         name,
-        "has several values, each of which needs a table of pressure and shear",
-        f"{one}; or neglect their interaction, by coupled=False of the roller (in a file "
-        "coupled = false in [cylinder])",
+        "has several values, each of which needs its own table of the coupled solution",
+        f"{one}; or take the fast law, by coupled=False of the roller (in a file: coupled = "
+        "false in [cylinder])",
     )
 
 
@@ -428,7 +430,7 @@ def describe_body(body: Any) -> str:
     """
     if not isinstance(body, Material):
         return repr(body)
-    modes = f"{body.prony.E.size} mode{'s' * (body.prony.E.size != 1)}"
+    modes = f"{body.prony.E.size} Prony term{'s' * (body.prony.E.size != 1)}"
     text = body.name or (
         "rigid" if body.is_rigid else f"E = {body.E:g} Pa, nu = {body.nu:g}, {modes}"
     )

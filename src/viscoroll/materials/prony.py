@@ -81,7 +81,7 @@ class OneOrMany:
 
     def __len__(self) -> int:
         if not self.shape:
-            raise TypeError("a single material has no length and no index, as several have")
+            raise TypeError("the Prony series of one material has no length and no index")
         return self.shape[0]
 
     def __bool__(self) -> bool:
@@ -152,7 +152,7 @@ class Prony(OneOrMany):
         strengths, times = _check_modes(E=E, tau=tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
-            allowed = f"at most {HIGHEST_ALPHA:g}, as each E is divided by the long-time modulus"
+            allowed = f"at most {HIGHEST_ALPHA:g}; give each E divided by the long-time modulus"
             raise ParameterError("sum of E", f"{np.max(alpha) - 1.0:g}", allowed)
         self._set(False, strengths, times, alpha)
 
@@ -488,7 +488,7 @@ class Prony(OneOrMany):
         """
         if self.shape:
             form = "creep" if self.by_creep else "relaxation"
-            return f"<{len(self)} series of {self._strengths.shape[-1]} modes, by {form}>"
+            return f"<{len(self)} Prony series in {form} form, terms: {self._strengths.shape[-1]}>"
         strengths = self._strengths.tolist()
         times = self._times.tolist()
         if self.by_creep:
@@ -521,7 +521,7 @@ def _check_modes(**given: ArrayLike) -> tuple[NDArray, NDArray]:
         raise described_error(
             f"{of_strengths} and {of_times}",
             f"have shape {shape}",
-            "lists, as [2.0] and [0.1], or arrays (materials, terms of the series)",
+            "lists, as [2.0] and [0.1], or arrays with axes (materials, terms of the series)",
         )
     values, each = sort_modes(*np.broadcast_arrays(values, each))
     present = values > 0.0

@@ -72,7 +72,7 @@ def unit_advice(name: str) -> str:
     quantities of a DMA, the option of the command.
     """
     unit = "%" if UNITS[name] == "1" else UNITS[name]
-    advice = f"give the unit of its numbers, as units={{{name!r}: {unit!r}}}"
+    advice = f"give the unit of the column, as units={{{name!r}: {unit!r}}}"
     return advice + f" (in a shell: --units '{name}={unit}')" * (name in QUANTITIES["dma"])
 
 
@@ -189,7 +189,7 @@ def columns_of(
         if (place := find_column(table, heading)) is None:
             raise described_error(
                 "columns",
-                f"names {heading!r:.60}",
+                f"has {heading!r:.60}, which is no heading of the file",
                 f"one of the headings {', '.join(map(repr, table.headings))}"
                 f"{suggestion(str(heading), table.headings)}",
             )
@@ -229,8 +229,8 @@ def columns_of(
             )
         elif index in owners:
             raise table.error(
-                f"column {heading!r} was given for {owners[index]}, but {faults[0]}; or is another "
-                "column meant?"
+                f"column {heading!r} was given for {owners[index]}, but {faults[0]}; if another "
+                "column is meant, give that heading"
             )
         else:
             others[heading or f"column {index}"] = faults[0] if faults else ""
@@ -302,7 +302,7 @@ def _contradiction(meaning: Reading, overruling: ByQuantity) -> str:
         return f"its unit {unit!r} is not a unit of {name}: {unit_advice(name)}"
     if "angular" in name and unit.lower().endswith(("hz", "cps")):
         return (
-            f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in its "
+            f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in the "
             f"heading, or {unit_advice(name)}"
         )
     return ""
@@ -332,8 +332,8 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     in_doubt = {"phase angle": most <= 0.5 * math.pi, "temperature": most > KELVIN}
     if not column.stated and (not unit or in_doubt.get(name)):
         raise table.error(
-            f"column {column.heading!r} has no unit, which its largest value {most:g} does not "
-            f"show: {unit_advice(name)}"
+            f"column {column.heading!r} has no unit, and its largest value {most:g} does not "
+            f"show which one is meant: {unit_advice(name)}"
         )
     if column.log:
         values = column.log**values
@@ -347,12 +347,12 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     if name == "temperature":
         table.require(
             (values > ABSOLUTE_ZERO) & (values < math.inf),
-            f"the temperature must be above {ABSOLUTE_ZERO} °C: correct or remove the row",
+            f"the temperature must be above {ABSOLUTE_ZERO} °C: correct or remove this line",
         )
     if name == "phase angle":
         table.require(
             values < 0.5 * math.pi,
-            "the phase angle must be below 90 degrees: correct or remove the row",
+            "the phase angle must be below 90 degrees: correct or remove this line",
         )
         # the derivative of the tangent is 1/cos^2
         return Numbers(np.tan(values), half / np.cos(values) ** 2)
@@ -436,8 +436,8 @@ def conversion_of_column(
     found = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
     turns = wanted == "rad s-1" and not CYCLES.search(unit)
     if turns and any(each.name == "rotational speed" for each in meanings(column)):
-        given = "numbers without a unit" if unit in NO_UNIT else unit
-        raise ParameterError("unit", given + TURNS, "one of these, as the unit of the column")
+        given = "(none)" if unit in NO_UNIT else unit
+        raise ParameterError("unit", given + TURNS, "one of these units, given for the column")
     if unit in NO_UNIT and wanted != "1":
-        warn_of_model(f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}")
+        warn_of_model(f"{path}: column {column!r} has no unit; {wanted} is assumed: {advice}")
     return found

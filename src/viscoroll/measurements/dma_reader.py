@@ -138,7 +138,7 @@ def read_relaxation(
     if not {"time", *pair} <= alike.keys():
         raise source.missing(
             "relaxation",
-            "no column was found for the relaxation modulus, nor for both stress and strain"
+            "no column was found for the relaxation modulus, nor two for stress and strain"
             if "time" in alike
             else "no column was found for time",
         )
@@ -149,7 +149,7 @@ def read_relaxation(
     for name in ("time", *pair):
         table.require(
             (numbers[name] > 0.0) & (numbers[name] < np.inf),
-            f"the {name} must be > 0 and finite: correct or remove the row",
+            f"the {name} must be > 0 and finite: correct or remove this line",
         )
     # a strain is in use only beside a stress
     relaxation = numbers[pair[0]] / numbers.get("strain", 1.0)
@@ -159,8 +159,8 @@ def read_relaxation(
         source.refuse_unread_temperatures()
     elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise table.error(
-            f"is at {temperature.min():g} to {temperature.max():g} °C, and must be at one "
-            "temperature: keep the rows of one"
+            f"was measured at {temperature.min():g} to {temperature.max():g} °C: keep the lines of "
+            "one temperature"
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)
@@ -297,7 +297,7 @@ def read_dma(
     elif not reduced:
         source.refuse_unread_temperatures()
         temperature = temperatures_of_lines(table)
-        notes += ["temperatures are those of lines above the rows"] * (temperature is not None)
+        notes += ["temperatures are read from lines above the numbers"] * (temperature is not None)
     omega = numbers["reduced frequency" if reduced else "frequency"].values
     moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
     storage, loss = storage_and_loss(table, pair, moduli)
@@ -310,9 +310,9 @@ def read_dma(
             storage = storage / square
             loss = loss / square
     # the decades of a modulus are below 10, and those of a low frequency negative
-    advice = "correct or remove the row"
+    advice = "correct or remove this line"
     if omega.min() < 0.0 or storage.max() < SOFTEST:
-        advice += ", or, if these are logarithms, write log before the heading"
+        advice += ", or, if the column has logarithms, write log before its heading"
     for name, values in {
         "frequency": omega,
         "storage modulus": storage,
@@ -340,19 +340,19 @@ def read_dma(
     ]
     if above and temperature is None:
         notes.append(
-            f"no temperature is read from lines above the headings, {quoted(above)}: give "
+            f"the temperature above the headings ({quoted(above)}) is not used: give it as "
             "temperature= to fit_prony (in a shell: --temperature)"
         )
     # a single row may be one of a sweep that the user cut
     if omega.size > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
         raise table.error(
-            f"all {omega.size} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a "
-            "frequency sweep; give a file with several frequencies"
+            f"all {omega.size} lines have the same frequency, {omega[0]:.4g} rad/s: give a file "
+            "with several frequencies (a frequency sweep)"
         )
     if temperature is None and len(table.starts) > 1:
         raise table.error(
-            f"has {len(table.starts)} tables, and no column states their temperature: keep one of "
-            "them, or write 'Temperature 20 °C' above each"
+            f"has {len(table.starts)} tables without a column of temperature: keep one of them, "
+            "or write a line with its temperature above each, as 'Temperature 20 °C'"
         )
     record = DynamicModuli(
         omega=omega,
@@ -392,13 +392,13 @@ def _choose_columns(source: Understood) -> tuple[str, tuple[str, str], dict[str,
     quantities = {column.quantity for column in found}
     problem = (
         "no column was found for frequency"
-        + " (a sweep of temperature has none: measure a sweep of frequency)"
+        + " (temperature sweeps cannot be used: measure a frequency sweep)"
         * ("temperature" in quantities)
     )
     if quantities & {"frequency", "reduced frequency"}:
         problem = (
-            "fewer than two columns were found of storage, loss, tan delta and modulus (the "
-            "magnitude), all in tension or all in shear"
+            "at least two columns are needed of storage, loss, tan delta and modulus (the "
+            "magnitude), all in tension or all in shear, but fewer were found"
         )
         # without compliances first, then without moduli
         for mode, excluded in itertools.product(modes or [""], ("1/Pa", "Pa")):

@@ -198,12 +198,12 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str 
     ]
     for name, column in zip(names, values):
         if column.ndim != 1 or column.shape != values[0].shape:
-            raise shape_error(name, column.shape, "a vector (one axis), as long as the others")
+            raise shape_error(name, column.shape, "a list of numbers, as long as the other lists")
     if values[0].size < fewest:
         raise described_error(
             names[0],
             f"has too few points{place}, {values[0].size}",
-            f"at least {fewest} points{' at each temperature' * bool(place)}",
+            f"a list of at least {fewest} points{' at each temperature' * bool(place)}",
         )
     order = np.argsort(values[0], kind="stable")
     return kind(*(column[order] for column in values))
@@ -545,13 +545,13 @@ class DynamicModuli(ModuliRecord):
         Warns with ModelWarning where the record has temperatures that span more than 1 K, or moduli
         of shear, which these arrays do not state.
         """
-        lost = ["the temperatures"] * (not self.isothermal) + ["that the moduli are of shear"] * (
-            self.mode == "shear"
-        )
+        lost = ["the temperatures"] * (not self.isothermal) + [
+            "the statement that they are of shear"
+        ] * (self.mode == "shear")
         if lost:
             warn_of_model(
-                f"{self.source or 'record'}: omega, storage and loss alone do not state "
-                f"{' and '.join(lost)}: call fit_prony(record) with the whole record"
+                f"{self.source or 'record'}: omega, storage and loss alone lack "
+                f"{' and '.join(lost)}: give the whole record instead, as fit_prony(record)"
             )
         return super().__iter__()
 

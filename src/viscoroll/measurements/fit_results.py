@@ -246,7 +246,7 @@ class SeriesFit(Result):
         """
         if self._fault:
             warn_of_model(
-                f"{self._fault}: see the large errors in fit.plot(), and the how-to on DMA data"
+                f"{self._fault}: fit.plot() shows the errors, the how-to on DMA data their causes"
             )
         E = self.E
         measured = self.measured

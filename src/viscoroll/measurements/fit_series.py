@@ -191,15 +191,15 @@ def fit_prony(
                 raise described_error(
                     name,
                     "is given",
-                    "left out, since the result of read_dma contains it; write modes=5 for a "
-                    "number of modes",
+                    "left out, since the result of read_dma contains it; give a number of terms "
+                    "by name, as modes=5",
                 )
         if mode not in (None, record.mode):
             raise ParameterError(
                 "mode",
                 repr(mode),
-                f"{record.mode!r}, the mode of {record.source or 'the data'}, or left out (the "
-                "headings E' and E'' mean tension, G' and G'' shear)",
+                f"{record.mode!r}, as read from {record.source or 'the data'}, or left out "
+                "(headings E' and E'' mean tension, G' and G'' shear)",
             )
         omega = record.omega
         storage = record.storage
@@ -211,7 +211,7 @@ def fit_prony(
         raise described_error(
             "storage or loss",
             "is not given",
-            "given beside omega; or give a record of read_dma alone",
+            "given beside omega; or give only the result of read_dma",
         )
     check_choice("on", on, "both", "storage")
     if not (vertical_shift in (None, "entropic") or callable(vertical_shift)):
@@ -322,8 +322,8 @@ def fit_relaxation(
             raise described_error(
                 "relaxation or mode",
                 "is given",
-                "left out, since the result of read_relaxation contains both (by headings E(t) for "
-                "tension, G(t) for shear); write modes=5 for a number of modes",
+                "left out, since the result of read_relaxation contains both (headings: E(t) for "
+                "tension, G(t) for shear); give a number of terms by name, as modes=5",
             )
         mode = _mode(t.mode)
         source = source or t.source
@@ -342,7 +342,7 @@ def fit_relaxation(
         raise described_error(
             "relaxation",
             f"rises with time from {first:g} to {last:g}",
-            "a relaxation modulus, which falls (a creep compliance rises)",
+            "a relaxation modulus, which falls with time (a creep compliance rises)",
         )
     _, fields, errors = _fit_series(curve, modes, misfit)
     temperature = None if temperature is None else check_celsius("temperature", temperature)
@@ -392,7 +392,7 @@ def _fit_series(
         raise described_error(
             data._fields[0],
             f"extends from {data[0][0]:g} to {data[0][-1]:g}",
-            f"within a factor of {MOST_SPREAD:g}; leave the outer points out",
+            f"within a factor of {MOST_SPREAD:g}; leave out points at either end",
         )
     spectrum, grid, reached = fewest_modes(data, target, modes)
     T_ref = float(spectrum.tau.max(initial=0.0)) or 1.0  # 1 without modes
@@ -498,8 +498,8 @@ def fit_at_strain(
         if abs(math.log(strain / last)) <= _CHANGE:
             return fit
     raise ConvergenceError(
-        "fit_at_strain: the strain of the contact does not converge, its last two values are "
-        f"{last:.6g} and {strain:.6g}; fit the record of one strain by fit_prony"
+        "fit_at_strain: the strain of the contact does not converge (its last two values are "
+        f"{last:.6g} and {strain:.6g}); fit the data of one strain by fit_prony"
     )
 
 
@@ -520,8 +520,8 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
         if record.mean_strain is None:
             raise described_error(
                 "records",
-                f"have one without strain{f' ({record.source})' * bool(record.source)}",
-                "of files that have a column of strain with its unit; fit_prony(record) needs none",
+                f"contain one without strains{f' ({record.source})' * bool(record.source)}",
+                "of files with a column of strain and its unit; fit_prony(record) needs no strains",
             )
         strains = np.asarray(record.strain)
         order = np.argsort(strains, kind="stable")
@@ -533,10 +533,12 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
     if len({*means}) < max(1, len(means)):
         given = ", ".join(f"{mean:.4g}" for mean in means) or "(none)"
         raise described_error(
-            "records", f"have the strains {given}", "at least one, each of another strain"
+            "records", f"have the strains {given}", "one or more, of different strains"
         )
     if len({each.mode for each in found}) > 1:
-        raise described_error("records", "are of tension and of shear", "all of one of them")
+        raise described_error(
+            "records", "are of tension and of shear", "all of tension or all of shear"
+        )
     return sorted(found, key=lambda each: each.mean_strain)
 
 
@@ -569,7 +571,7 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
     if not (0.0 < part < 1.0 and isothermal):
         near = less if part < 0.5 else more
         return replace(
-            near, source=f"{near.source or 'record'}, the set at a strain of {near.mean_strain:.3g}"
+            near, source=f"{near.source or 'record'}, data at a strain of {near.mean_strain:.3g}"
         )
     both = (less.omega >= more.omega.min()) & (less.omega <= more.omega.max())
     low = _points(less, both)
@@ -579,7 +581,7 @@ def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
         other = np.interp(np.log(low.omega), np.log(more.omega), np.log(getattr(more, name)))
         moduli[name] = np.exp((1.0 - part) * np.log(getattr(low, name)) + part * other)
     source = (
-        f"{low.source or 'record'}, interpolated at a strain of {strain:.3g} between the sets at "
+        f"{low.source or 'record'}, interpolated at a strain of {strain:.3g} between data at "
         f"{strains[n - 1]:.3g} and {strains[n]:.3g}"
     )
     strain_of_points = np.full(low.omega.size, strain)

@@ -26,7 +26,7 @@ _INADEQUATE = "the model does not describe the test, and the intervals mean noth
 #: correlation from which on the report names it
 _CLOSE = 0.9
 #: where a product by slopes holds
-_NEAR = " (linearised: valid only while each unknown changes by less than a fifth)"
+_NEAR = " (a linear approximation, valid where each unknown changes by less than a fifth)"
 #: word behind the name of a column -> what it says of the quantity
 _ENDS = {
     "low": "lower end of the band",
@@ -83,11 +83,11 @@ def _heading(fit: Any) -> str:
         for column in problem.columns
         if column.estimated
     ]:
-        return f"{head}; standard deviation estimated: {', '.join(estimated)}"
+        return f"{head}; standard deviation of the data, estimated: {', '.join(estimated)}"
     chance = (
         ""
         if problem.robust or not fit.dof
-        else f" (probability of more: {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
+        else f" (probability that noise gives more: {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
     )
     return (
         f"{head}; chi2, the sum of (residual/sigma)^2, is {fit.chi2:.1f}, and about {fit.dof} for "
@@ -113,11 +113,11 @@ def _noise(fit: Any) -> Iterator[str]:
             # allowed is 3/sqrt(points)
             points = 9.0 / allowed**2
             yield (
-                f"the residuals of {name} are autocorrelated: neighbours correlate by {lag:.2f}, "
-                f"those of noise by at most {allowed * 2.0 / 3.0:.2f} ({size}); if this is noise, "
-                "the intervals hold: they are already widened to those of "
-                f"{points / noise.repeats:.0f} points in place of {points:.0f}; otherwise "
-                f"{_INADEQUATE}: plot the residuals"
+                f"neighbouring residuals of {name} correlate by {lag:.2f} ({size}); independent "
+                f"noise gives at most {allowed * 2.0 / 3.0:.2f}.  Plot the residuals.  If they are "
+                "correlated noise, the intervals hold, which are already widened to those of "
+                f"{points / noise.repeats:.0f} points in place of {points:.0f}.  Otherwise "
+                f"{_INADEQUATE}"
             )
         elif name in fit.misfit:
             yield (
@@ -141,19 +141,19 @@ def _limits(fit: Any) -> Iterator[str]:
             getattr(each, "omega0", None) == ROLLING for each in fit.records.values()
         )
         advice = (
-            ": omega0 was taken as V0/R, without slip; give omega0 if the cylinder was "
-            "launched with another"
+            ": omega0 was taken as V0/R, without slip; give omega0 if the cylinder slipped "
+            "at the start"
         )
         yield f"the data do not depend on {name}{advice * rolling}"
     *names, last = fit.undetermined or ("",)
     if names:
-        yield f"{', '.join(names)} and {last} cannot be separated by these data: {_products(fit)}"
+        yield f"these data cannot separate {', '.join(names)} and {last}: {_products(fit)}"
     elif last:
-        yield f"{last} is not determined by these data"
+        yield f"these data do not determine {last}"
     yield from _interval_limits(fit)
     for chi2, values in fit.minima[1:]:
         yield (
-            f"other values fit nearly as well, with a chi2 {chi2 - fit.chi2:.1f} higher: "
+            f"other values fit nearly as well, with a chi2 that is {chi2 - fit.chi2:.1f} higher: "
             f"{_values_text(values)}"
         )
     yield from _phases(fit)
@@ -185,13 +185,15 @@ def _products(fit: Any) -> str:
         for by_slopes in (False, True)
     )
     if not found:
-        return "the data determine no product of them either"
+        return "they do not determine a product of their powers either"
     # of those that stand first in the sentence: near is False of the sure ones
     limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
     verb = "are" if " and " in (sure or near) else "is"
     text = f"only {sure or near} {verb} determined" + " within the ranges given" * limited
     more = (
-        f"; near these values also {near}, more precisely" if sure else ", near these values only"
+        f"; near these values also {near}, more precisely"
+        if sure
+        else ", but only near these values"
     )
     return text + f"{more}{_NEAR}" * bool(near)
 
@@ -219,7 +221,7 @@ def _product_text(product: Any, values: dict[str, float]) -> str:
         {"both ends": lower} if lower == upper else {"the lower end": lower, "the upper end": upper}
     )
     limits = "".join(
-        f", {end} set by the range of {bounds}" for end, bounds in ends.items() if bounds
+        f", {end} set by the range given for {bounds}" for end, bounds in ends.items() if bounds
     )
     return f"{text} = {product.value:.4g} (95%: {low} to {high}{limits})"
 
@@ -242,11 +244,11 @@ def _interval_limits(fit: Any) -> Iterator[str]:
         for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by):
             if end is None:
                 yield (
-                    f"the interval of {name} has no {side} end: values up to that end of its range "
-                    "fit the data"
+                    f"the interval of {name} has no {side} end: all values to the {side} end of "
+                    "the range given for it fit the data"
                 )
             for bound in bounds:
-                limited.setdefault(bound, []).append(f"the {side} end of {name}")
+                limited.setdefault(bound, []).append(f"the {side} end of the interval of {name}")
         if found.pieces:
             yield (
                 f"the interval of {name} joins separate ranges that fit the data: values between "
@@ -255,11 +257,11 @@ def _interval_limits(fit: Any) -> Iterator[str]:
         if found.best.chi2 < fit.chi2 - _BETTER:
             listed = _values_text(problem.values(found.best.u))
             yield (
-                f"a better fit was found, with chi2 {found.best.chi2:.1f} at {listed}: give a "
-                "cylinder with these values, or more starts="
+                f"a better fit was found, with chi2 {found.best.chi2:.1f} at {listed}: repeat with "
+                "a cylinder of these values, or with a larger starts"
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
-        yield f"the best fit has {problem.names[i]} at the end of its range: extend it, if possible"
+        yield f"the best fit is at an end of the range of {problem.names[i]}: extend it if possible"
     for bound, ends in limited.items():
         yield f"the range given for {bound}, not the data, determines {', '.join(ends)}"
 
@@ -281,8 +283,8 @@ def _phases(fit: Any) -> Iterator[str]:
         slips = np.sum(predicted.get("slips", 0))
         if 0 < slips < _FEW:
             yield (
-                f"{record_name} has few points in full slip ({slips}), which determine mu: record "
-                "that phase more densely"
+                f"{record_name} has few points in full slip ({slips}), which alone determine mu: "
+                "record that phase with more points"
             )
 
 
@@ -425,7 +427,7 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
         else f"omega = {low:.3g} to {high:.3g} rad/s"
     )
     rows = [SummaryRow(*row) for row in _rows(fit)]
-    return f"Prony series of {fit.prony.E.size} modes for {fit.points} points, {span}", rows
+    return f"Prony series for {fit.points} points, {span}; modes (terms): {fit.prony.E.size}", rows
 
 
 def _rows(fit: Any) -> Iterator[tuple[str, str]]:
@@ -441,13 +443,13 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     """
     prony = fit.prony
     symbol = fit.symbols[0][0]
-    floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
+    floor = "" if fit.plateau else "; the data do not determine it, and the fit allows no less"
     yield symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}"
     if fit.mode == "shear":
         yield (
             "shear",
-            f"shear data: material(nu=) uses E = 2 (1 + nu) G, {2.0 * (1.0 + _NU):.4g} G at nu = "
-            f"{_NU:g}",
+            "the data are of shear: fit.material(nu) takes E = 2 (1 + nu) G, which is "
+            f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}",
         )
     yield "alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)"
     yield "T_ref", f"{fit.T_ref:.6g} s (the longest relaxation time)"
@@ -458,15 +460,15 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     if fit.points > fit.data[0].size:
         yield (
             "thinned",
-            f"the means of {fit.data[0].size} logarithmic bins replace the points, here and below",
+            f"the fit uses the means of {fit.data[0].size} logarithmic bins in place of the points",
         )
     target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
     yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
     if hasattr(fit, "t"):
         yield (
             "",
-            f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or "
-            "more",
+            f"{symbol}'' follows from the slope of {symbol}(t); its error is at least ten times "
+            "larger",
         )
     else:
         yield from _of_dynamic(fit, symbol)
@@ -477,25 +479,25 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         yield (
             "accuracy",
             f"of the rolling moment M: {errors} at the lowest, middle and highest speed that the "
-            "data cover, among all spectra that fit the data as well",
+            "data cover; M of other series that fit the data as well differs by no more",
         )
         (low, high), (least, most) = (
             (part.min(), part.max()) for part in (found.E / fit.E, found.alpha / prony.alpha)
         )
         yield (
             "",
-            f"in those of least and most M, {symbol} changes by factors of {low:.3g} to {high:.3g},"
-            f" alpha by factors of {least:.3g} to {most:.3g}",
+            f"in the series of least and most M, {symbol} is {low:.3g} to {high:.3g} times that "
+            f"above, alpha {least:.3g} to {most:.3g} times",
         )
     else:
         yield (
             "accuracy",
-            "of the rolling moment M: not known, since no speed has data from f to 3 f (rad/s; f = "
-            "speed/contact length) at which the material loses energy",
+            "of the rolling moment M: not known; this needs data with loss at the angular "
+            "frequencies f to 3 f, rad/s, with f = speed/contact length",
         )
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside):
-        yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"
+        yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the range of the data' if out else ''}"
 
 
 def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
@@ -522,8 +524,7 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
     if shifts.distinct > count:
         yield (
             "",
-            f"{shifts.distinct} temperatures, within 0.5 K of one another, were combined into "
-            f"{count}",
+            f"temperatures at most 0.5 K apart were combined: {shifts.distinct} into {count}",
         )
     if np.isfinite(shifts.mismatch).any():
         most = np.nanmax(shifts.mismatch)
@@ -548,7 +549,7 @@ def _kramers_kronig(median: float, symbol: str) -> str:
         text = f"is above 0, but {symbol}' does not rise with the frequency (Kramers-Kronig)"
     return (
         text
-        + ": the moduli are inconsistent or rise steeply, or relaxation times are far apart"
+        + ": the moduli contradict each other or rise steeply, or relaxation times are far apart"
         * (not _CONSISTENT[0] <= median <= _CONSISTENT[1])
     )
 
@@ -563,9 +564,9 @@ def _outside(fit: Any) -> str:
     """
     range_of = f"the data's range of {'times' if hasattr(fit, 't') else '1/omega'}"
     if not (count := fit.outside.sum()):
-        return f"no mode lies outside {range_of}"
+        return f"no relaxation time lies outside {range_of}"
     share = fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0)
     return (
-        f"{count} of {fit.prony.E.size} modes, {share:.1%} of the sum of strengths, lie outside "
-        f"{range_of}"
+        f"relaxation times outside {range_of}: {count} of {fit.prony.E.size}, with {share:.1%} of "
+        "the total relaxation strength"
     )

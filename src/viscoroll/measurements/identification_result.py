@@ -502,12 +502,12 @@ class Identification(Result):
         ("inf" where it does not act), in SI units without their names, and the last with chi2 and
         the degrees of freedom.
         """
-        title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
+        title = f"Identification, unknowns: {len(self.values)}, points: {self._problem.y.size}"
         rows = [
             SummaryRow(name, f"{value:.6g} +- {self.stderr[name]:.2g}")
             for name, value in self.values.items()
         ]
-        return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} of {self.dof}")]
+        return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} (noise: about {self.dof})")]
 
     __str__ = report
     to_xarray = as_dataset

@@ -142,7 +142,7 @@ def identify(
     prior = {} if prior is None else prior
     for name, value, kind, allowed in (
         ("cylinder", cylinder, Cylinder, "a Cylinder"),
-        ("unknown", unknown, Mapping, "a dict, as {'mu': (0.1, 1.0)} with a range for each name"),
+        ("unknown", unknown, Mapping, "a dict with a range for each name, as {'mu': (0.1, 1.0)}"),
         ("data", data, Iterable, "a list of records: vr.Resistance, vr.Traction or vr.Coastdown"),
         (
             "shift",
@@ -168,7 +168,7 @@ def identify(
     if changing and cylinder.scene().tabulated:
         raise described_error(
             "coupled",
-            f"is not False, and the coupled solution needs a table for each value of {changing[0]}",
+            f"is not False, but the coupled solution needs a table for each value of {changing[0]}",
             "False in the Cylinder (in a file: coupled = false in [cylinder]), for the fast law, "
             "whose error cylinder.validity(V) states",
         )
@@ -185,8 +185,8 @@ def identify(
         raise ParameterError(
             "number of unknowns",
             len(unknowns),
-            f"at most {most}, since the number of points is {problem.points}: give more points, "
-            "fewer unknowns, or sigma, whose estimate takes one point",
+            f"at most {most}, as the number of points is {problem.points} (the estimate of a sigma "
+            "that is not given takes one): give more points or sigma, or fewer unknowns",
         )
     return Identification(
         problem,
@@ -218,7 +218,7 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
             raise ParameterError("name", repr(name), "different for each record: give name=")
         if not record.sigma:
             raise described_error(
-                f"{name}: sigma", "is not given", "given for a plan, a record without values"
+                f"{name}: sigma", "is not given", "given for a record without values (a plan)"
             )
         found[name] = record
     if not found:
@@ -227,9 +227,9 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
     if 0 < len(planned) < len(found):
         raise described_error(
             "data",
-            f"has values in some records, but not in {', '.join(planned)}",
-            "measured in all records or, for a plan, in none: give the missing values, or fit the "
-            "others, and plan these with fit.cylinder",
+            f"has measured values in some records, but none in {', '.join(planned)}",
+            "measured in all records, or in none (a plan).  Give the missing values; or identify "
+            "with the measured records alone, and plan the others with fit.cylinder",
         )
     return found
 
@@ -421,7 +421,7 @@ def read_measurements(path: str | os.PathLike[str]) -> dict[str, Any]:
     for section, kind in _SECTIONS.items():
         if not isinstance(given := content.get(section), kind):
             header = "[[data]]" if kind is list else f"[{section}]"
-            found = f"{section} = {given!r:.40}: must be a section {header}"
+            found = f"{section} = {given!r:.40}: must be a section with the header {header}"
             raise section_error(
                 path, "", section, found if section in content else f"section {header} is missing"
             )
@@ -545,12 +545,12 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         try:
             found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
-            per = ", per metre of length of the cylinder" * unit.endswith(" m-1")
+            per = " (per metre of length of the cylinder)" * unit.endswith(" m-1")
             raise described_error(
                 name,
-                f"is in {error.value}",
-                f"in a unit of the dimension of {unit}{per}; if its heading is wrong, write in "
-                f"[[data]] units = {{ {name} = 'UNIT' }}",
+                f"has the unit {error.value}",
+                f"in a unit of the dimension of {unit}{per}; if the heading has a wrong unit, "
+                f"write units = {{ {name} = 'UNIT' }} in [[data]]",
             ) from error
     return found
 
@@ -573,7 +573,7 @@ def _said(table: Table, names: set[str]) -> dict[str, str]:
                 if name in found:
                     raise FileError(
                         table.path,
-                        f"{found[name]!r} and {heading!r} may both be {name}: write one in "
+                        f"{found[name]!r} and {heading!r} may both be {name}: name one in "
                         f"[[data]], as columns = {{ {name} = {found[name]!r} }}",
                     )
                 found[name] = heading

@@ -70,7 +70,7 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
             own = [*map(np.size, column)]
             if own != sizes:
                 raise described_error(
-                    name, f"has curves of {own} points", f"of as many as those of omega, {sizes}"
+                    name, f"has curves of {own} points", f"as many as omega has, {sizes}"
                 )
         if given.shape != (len(sizes),):
             raise shape_error(
@@ -80,7 +80,7 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
             raise described_error(
                 "omega",
                 f"has no points for curve {sizes.index(0) + 1}",
-                "one or more in each curve",
+                "a list with points for each curve",
             )
         first = np.cumsum([0, *sizes[:-1]])
         given = np.repeat(given, sizes)
@@ -179,7 +179,7 @@ def listed_factors(
     found[of_curve] = factors
     if (found[of_curve] != factors).any():
         raise described_error(
-            "shift", "has several factors for one temperature (to 0.5 K)", "one for each"
+            "shift", "has different factors for one temperature (to 0.5 K)", "one for each"
         )
     base = reference_of(
         base, temperatures, [T for T, a_T in zip(temperatures, found) if abs(a_T - 1.0) <= _ONE]
@@ -189,8 +189,8 @@ def listed_factors(
         raise ParameterError(
             "reference",
             base,
-            f"one of {', '.join(map(str, temperatures))} °C, whose factors shift lists; for others "
-            "give shift as a function of the temperature, as vr.WLF(T0=20.0)",
+            f"one of {', '.join(map(str, temperatures))} °C, which have a factor in shift; for "
+            "others give shift as a function of the temperature, as vr.WLF(T0=20.0)",
         )
     return found / found[index], base
 
@@ -319,7 +319,7 @@ def master_curve(
             raise ParameterError(
                 "reference",
                 base,
-                f"from {low} to {high} °C, as the curves, or at most 0.5 K outside",
+                f"from {low} to {high} °C, as the curves, or at most 0.5 K beyond",
             )
         curves = []
         for n, T in enumerate(temperatures):
@@ -348,13 +348,13 @@ def master_curve(
         raise ParameterError(
             "shift" if shift is not None else "shift found by the overlap",
             f"{factor[0]:.3g} at {low:g} °C and {factor[-1]:.3g} at {high:g} °C",
-            "shift factors a_T (time divided by time at the reference), which decrease with "
+            "shift factors a_T (relaxation time divided by that at reference), which fall with "
             "temperature (a list has the order of the curves): check the curves where they rise, "
             f"{', '.join(rises)}",
         )
     if rises:
         warn_of_model(
-            f"a_T rises with temperature {'; '.join(rises)}, but should fall: check these curves"
+            f"the shift factor a_T rises {'; '.join(rises)}, but should fall: check these curves"
         )
     if open_shifts:
         warn_of_model(
@@ -418,8 +418,8 @@ def _shifts_by_overlap(
             torn.append(f"from {cold:g} to {warm:g} °C")
     if torn:
         warn_of_model(
-            f"E' and E'' overlap best at different shifts {', '.join(torn)}; the modulus that "
-            'overlaps better decides: compare with a fit with on="storage"'
+            f"storage and loss modulus overlap best at different shifts {', '.join(torn)}; the "
+            'better one decides: compare with a fit with on="storage" (in a shell: --on storage)'
         )
     # reshaped, since found is empty of a single curve
     steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
@@ -456,7 +456,7 @@ class _LogCurve:
         if self.x.size < 2:
             raise described_error(
                 "omega",
-                "has a single value at one temperature",
+                "has only one value at one of the temperatures",
                 "two frequencies or more at each temperature",
             )
         kind = interpolate.CubicSpline if self.x.size > 3 else interpolate.PchipInterpolator

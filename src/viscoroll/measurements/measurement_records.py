@@ -113,7 +113,7 @@ class Record:
                 raise ParameterError(
                     self.label("sigma"),
                     f"{sigma!r:.40}",
-                    f"one for each quantity, as {{{': ..., '.join(map(repr, among))}: ...}}",
+                    f"one per quantity in a dict, as {{{': ..., '.join(map(repr, among))}: ...}}",
                 )
             sigma = {among[0]: sigma}
         check_names(self.label("sigma"), sigma, among, "a quantity of the record")
@@ -523,7 +523,7 @@ class Coastdown(Record):
             if value is None:
                 if data is None:
                     raise ParameterError(
-                        self.label(name), None, "a number, as the record has no data that show it"
+                        self.label(name), None, "given, as the record has no data that show it"
                     )
                 first = float(data[0])
                 most = float(np.abs(data).max())

@@ -108,8 +108,8 @@ def storage_and_loss(
         values, half = columns[name]
         table.require(
             np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half,
-            f"{name} contradicts {both}: give the unit of one, as units={{'tan delta': '%'}} (in a "
-            "shell: --units 'tan delta=%'), or remove one of these columns",
+            f"{name} disagrees with {both}: give the unit of one, as units={{'tan delta': '%'}} "
+            "(in a shell: --units 'tan delta=%'), or remove one of these columns",
         )
     return storage, loss
 
@@ -177,7 +177,7 @@ class Understood(NamedTuple):
             return said, []
         for heading in self.table.headings:
             if OF_SHEAR.search(heading):
-                return "shear", [f"shear is assumed, since the file has {heading!r}"]
+                return "shear", [f"shear is assumed, since the file has the heading {heading!r}"]
         return "tension", ["tension is assumed, since no heading says E or G"]
 
     def notes(self, taken: list[Column]) -> list[str]:
@@ -196,7 +196,7 @@ class Understood(NamedTuple):
         )
         notes += [f"unused columns: {listed}"] * bool(listed)
         below = [text for n, text in self.table.titles.items() if n > self.table.rows[-1].number]
-        return notes + [f"lines below the rows are left out, as {quoted(below[:1])}"] * bool(below)
+        return notes + [f"lines below the numbers are unused: {quoted(below[:1])}"] * bool(below)
 
     def numbers(self, alike: list[Column]) -> Numbers:
         """Return the numbers of the first of several columns of one quantity, after a check that
@@ -224,15 +224,15 @@ class Understood(NamedTuple):
                 else (_ROUND_PI if best.quantity.endswith("frequency") else AVERAGED)
                 * np.abs(first.values)
             )
-            advice = "rename or remove one in the file"
+            advice = "rename or remove one of these columns"
             if column.heading != best.heading:
                 advice = (
-                    f"choose by columns={{{best.name!r}: {best.heading!r}}} or "
+                    f"choose one by columns={{{best.name!r}: {best.heading!r}}} or "
                     f"columns={{{column.name!r}: {column.heading!r}}}"
                 )
             self.table.require(
                 np.abs(first.values - second.values) <= first.half + second.half + allowed,
-                f"{best.heading!r} and {column.heading!r} contradict each other: {advice}",
+                f"columns {best.heading!r} and {column.heading!r} contradict each other: {advice}",
             )
             self.others[column.heading] = f"agrees with {best.heading!r}"
         return first
@@ -280,8 +280,8 @@ class Understood(NamedTuple):
                 if factor and spread > SAME_TEMPERATURE:
                     raise table.error(
                         f"column {heading!r} looks like temperatures, but is not read: name it by "
-                        f"columns={{'temperature': {heading!r}}}, or remove it if these are not "
-                        "those of the sample"
+                        f"columns={{'temperature': {heading!r}}}, or remove it if it is not the "
+                        "temperature of the sample"
                     )
 
 
@@ -332,9 +332,8 @@ def understand(
             raise FileError(
                 path,
                 f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
-                f"({', '.join(bare)}): write headings, and a missing column, into the file; "
-                f"or, as columns have the headings {', '.join(map(repr, table.headings))} here, "
-                f"{_NAME_THEM[test]}",
+                f"({', '.join(bare)}): write headings and missing columns into the file; or, with "
+                f"{', '.join(map(repr, table.headings))} as HEADING, {_NAME_THEM[test]}",
             )
         named = dict(zip(bare, table.headings))
     found, others = columns_of(table, test, named, overruling, defaults)
@@ -406,15 +405,15 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
     for column in assumed:
         if any(each.stated and UNITS[each.name] == UNITS[column.name] for each in taken):
             raise table.error(
-                f"column {column.heading!r} has no unit, but others like it do: "
+                f"column {column.heading!r} has no unit, but other columns like it do: "
                 f"{unit_advice(column.name)}"
             )
     if assumed:
         units = {column.name: column.unit for column in assumed}
-        doubt = f"; a rubber has more than {moduli.max():g} Pa: are moduli in MPa, or logarithms?"
+        doubt = f"; {moduli.max():g} Pa are too low for rubber: are moduli in MPa, or logarithms?"
         warn_of_model(
-            f"{table.path}: columns without a unit are taken as with units={units}: write the "
-            "units into the file, or give units= with yours (in a shell: --units)"
+            f"{table.path}: columns lack a unit, and units={units} are assumed: write the "
+            "units into the file, or give yours by units= (in a shell: --units)"
             f"{doubt * bool(moduli.max() < SOFTEST)}"
         )
     for column in taken:
@@ -423,7 +422,7 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
             if most > _MOST_DAMPED:
                 warn_of_model(
                     f"{table.path}: tan delta is up to {most:g}, above that of any rubber: "
-                    f"{unit_advice(column.name)}, or '1' in place of '%' if it is no per cent"
+                    f"{unit_advice(column.name)}, or '1' in place of '%' if it is not in per cent"
                 )
 
 
@@ -441,11 +440,11 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     holds = np.ones(at.size, bool)
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
-    advice = "if strains or temperatures differ, give each a file (DMA: or a temperature column)"
-    table.require(holds, f"an earlier row has the same {name} and another modulus: {advice}")
+    advice = "if strain or temperature differs, make a file for each (DMA: or a temperature column)"
+    table.require(holds, f"an earlier line has the same {name}, but another modulus: {advice}")
     if change.max(initial=0.0) > _SCATTER:
         warn_of_model(
-            f"{table.path}: rows with the same {name} have moduli that differ by up to "
+            f"{table.path}: lines with the same {name} have moduli that differ by up to "
             f"{np.expm1(change.max()):.0%}, and are taken as repetitions of a test: {advice}"
         )
 
@@ -485,7 +484,7 @@ def temperatures_of_lines(table: Table) -> Floats | None:
         values = {*lines[start].values()}
         if len(values) != 1 or None in values:
             raise table.error(
-                f"the rows from line {numbers[start]} on need a line above them with one "
+                f"the numbers from line {numbers[start]} on need a line above them with one "
                 "temperature, as 'Temperature 20 °C'"
             )
         temperature[start:] = values.pop()  # blocks below overwrite theirs

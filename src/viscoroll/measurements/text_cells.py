@@ -102,12 +102,12 @@ def fault_of(cell: str, decimal: str) -> str:
     1.8e308.
     """
     if _GAP.fullmatch(cell):
-        return "is a missing value; write the number, or remove the row"
+        return "is a missing value; write the number, or remove this line"
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
         return "is too large, above 1.8e308" if np.isinf(float(cell.translate(_PYTHON))) else ""
     if _THOUSANDS.fullmatch(cell) or (not decimal and _NUMBER.fullmatch(cell)):
         return (
-            "has a mark that may be a decimal mark or a separator of thousands; write for example "
+            "has a comma or point that may mark decimals or thousands; write for example "
             "1150 or 1.15 in place of 1.150, and one decimal mark in the whole file"
         )
     return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else '; remove the row'}"
@@ -188,7 +188,9 @@ def read_lines(path: FilePath, encoding: str | None) -> list[str]:
     with as_file_error(path, "cannot be read"):
         raw = pathlib.Path(path).read_bytes()
     if raw.startswith(_WORKBOOKS):
-        raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
+        raise FileError(
+            path, "is a spreadsheet or an archive, not a text file: save the sheet as CSV"
+        )
     shown = [name for first, name in _ENCODINGS.items() if re.match(first, raw)]
     usual = _JAPANESE if _KANJI.search(raw) else _USUAL
     for name in [encoding] if encoding else shown[:1] or usual:
@@ -199,10 +201,10 @@ def read_lines(path: FilePath, encoding: str | None) -> list[str]:
                 "encoding", f"{name!r:.40}", "an encoding that Python knows, as 'utf-8'"
             ) from None
         except UnicodeError:
-            problem = f"is not written in {name}: give its encoding, as encoding='cp1252'"
+            problem = f"is not in the encoding {name}: give the right one, as encoding='cp1252'"
             continue
         if "\0" in text:
-            raise FileError(path, "is not a text file, since it has null bytes: export it as CSV")
+            raise FileError(path, "is not a text file (it contains null bytes): export it as CSV")
         # without Excel's own line on the separator
         text = re.sub(r"(?i)\Asep=[^\r\n][^\S\r\n]*(?=[\r\n]|\Z)", "", text)
         return re.split(r"\r\n|\r|\n", text)

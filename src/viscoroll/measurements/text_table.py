@@ -171,8 +171,8 @@ def read_table(
     if not widths:
         raise FileError(
             path,
-            "has no row of numbers: write columns of numbers, separated by tabs, semicolons, bars, "
-            "commas or blanks",
+            "has no line of numbers: write columns of numbers, separated by tabs, semicolons, "
+            "bars, commas or blanks",
         )
     layout = _Layout(
         path=path,
@@ -278,8 +278,8 @@ class _Layout(NamedTuple):
                 if line.numeric and len(line.cells) == width and are_numbers(line.cells):
                     raise self.fault(
                         line,
-                        "has numbers above the headings: remove it, and keep one table or one "
-                        "group of columns",
+                        "has numbers above the headings: keep one table, and remove the lines "
+                        "above its headings",
                     )
             return heads
         first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
@@ -296,7 +296,7 @@ class _Layout(NamedTuple):
         for line in lines[:first]:
             if not line.comment and len(line.cells) == width:
                 raise self.fault(
-                    line, "has neither headings nor numbers: remove it, or begin it with #"
+                    line, "has neither headings nor numbers: remove this line, or begin it with #"
                 )
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
@@ -336,10 +336,10 @@ class _Layout(NamedTuple):
             rows.pop()
         for row in rows:
             if not row.numeric:
-                advice = "; if it is the temperature of the rows below, write 'Temperature 20 °C'"
+                advice = "; if it is the temperature of the lines below, write 'Temperature 20 °C'"
                 raise self.fault(
                     row,
-                    "is not a row of numbers: remove it, or begin it with #"
+                    "is not a line of numbers: remove it, or begin it with #"
                     f"{advice * self.footers}",
                 )
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
@@ -456,7 +456,7 @@ def find_column(table: Table, name: str) -> int | None:
     if len(found) > 1:
         headings = [table.headings[n] for n in found]
         alike = exact or len({*headings}) < len(headings)
-        advice = "rename or remove one in the file" if alike else "give the heading with its unit"
+        advice = "rename or remove one of them" if alike else "give the heading with its unit"
         raise table.error(
             f"columns {' and '.join(map(repr, headings))} are both named {name!r}: {advice}"
         )

@@ -157,7 +157,7 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
         raise ParameterError(
             f"unknown {name}",
             f"({low:g}, {high:g})",
-            f"a range that contains the value with which the search starts, {start:.6g}",
+            f"a range that contains {start:.6g}, the value with which the search starts",
         )
     linear = name.split(":")[0] in _LINEAR
     unit = max(abs(start), _UNIT * (high - low)) if linear else None
@@ -210,7 +210,7 @@ def cylinder_of(
                 raise ParameterError(
                     record.label("temperature"),
                     record.temperature,
-                    f"left out, or given with a shift of the body, as shift={{{section!r}: "
+                    f"left out, unless the body has a shift: give it as shift={{{section!r}: "
                     f"vr.WLF(T0=20.0)}} or, in a file, wlf = {{ T0 = 20.0 }} in [{section}]",
                 )
             changed = changed.at(record.temperature, shift)
