@@ -101,7 +101,7 @@ REFUSED = [
             "column 'j' of j.nc: the file is damaged, or is not a .nc file": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{file("j", "j.nc")}", column = "j" }}'
             ),
-            "is the law of every alpha": lambda: vr.tables.export(
+            "has the laws of a range of alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"
             ),
             "line 8: [material] T_ref cannot be uncertain; E, nu, prony, creep, temperature, "
@@ -246,7 +246,7 @@ REFUSED = [
             ),
             "has the number 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
             "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
-            "line 4 | : must have low < high and a probability above 0": (
+            "line 4 | : must be [low, high] with a probability above 0": (
                 "a preset",
                 "[0.05, 0.6]",
                 "[-0.05, 0.0]",

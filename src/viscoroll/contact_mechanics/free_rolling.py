@@ -294,7 +294,7 @@ class FreeRolling:
         scene = scene.uncoupled  # a free roller has hardly any traction
         refuse_cover(
             scene,
-            "leave this call out, as free rolling depends on the added mass N, which is not known",
+            "free rolling is not computed, as it depends on the added mass N, which is not known",
         )
         materials: Any
         unit: Any

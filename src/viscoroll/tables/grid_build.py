@@ -185,7 +185,7 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
         raise ParameterError(
             "what",
             describe_value(what),
-            "a Scene, a Cylinder or the law of half-spaces; if a body is a layer, the Cylinder",
+            "a Scene, a Cylinder, or the law of half-spaces (that of a layer needs its Cylinder)",
         )
     if shape := what.scene().shape:
         raise described_error(
