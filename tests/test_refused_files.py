@@ -83,7 +83,9 @@ REFUSED = [
             "units of V = missing | m/s or a multiple of it, or 1 of a": OTHER_GRID.assign_coords(
                 V=OTHER_GRID.V.drop_attrs()
             ),
-            "is not a grid of a law, since V does not increase over two": OTHER_GRID.isel(V=[0]),
+            "grid of a law, since V is not a list of two or more increasing": OTHER_GRID.isel(
+                V=[0]
+            ),
         },
     ),
     *files(

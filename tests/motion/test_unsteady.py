@@ -157,7 +157,7 @@ def test_a_short_rest_costs_less(t_w):
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the look-up of a motion so slow
 def test_caught_in_the_imprint():
     """V = 1.3 is 4.3 cm/s, of which validity says it too."""
-    with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of its standstill"):
+    with pytest.warns(RuntimeWarning, match="too slow at the start to leave the indentation"):
         m = ROLLER.roll(1.3, 1.3, T[:3], rested=True, unsteady=True)
     V0 = np.array([1.3, 30.0, -1.3])
     e = ROLLER.ensemble(V0, V0, T[:3], rested=True, unsteady=True)

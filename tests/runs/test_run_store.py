@@ -143,7 +143,7 @@ def test_other_folders_are_refused(tmp_path, whole):
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
         (
             partial(run_ensemble, run, thesis),
-            "no results store, as it has chapter.tex: give another folder",
+            "is no results store (it contains chapter.tex): give another folder",
         ),
         (partial(verify, thesis), "not a results store"),
     ):
@@ -260,7 +260,5 @@ def test_an_interrupt_answers_at_once(tmp_path):
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
-    kept = (
-        "interrupted: 0 of 4 blocks were added to store.zarr; to resume, repeat the run"
-    )
+    kept = "interrupted: 0 of 4 blocks were added to store.zarr; to resume, repeat the run"
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

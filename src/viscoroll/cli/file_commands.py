@@ -118,7 +118,7 @@ def _units(text: str) -> Any:
         metavar="NAME=HEADING",
         action="append",
         default=[],
-        help="quantity and heading of a column, for example storage=Module 1; may be repeated",
+        help="quantity and heading of a column, for example 'storage=Module 1'; may be repeated",
     ),
     option("--decimal", choices=(".", ","), help="decimal mark (default: found from the numbers)"),
     option("--encoding", help="encoding of the file (default: found from its first bytes)"),
@@ -403,7 +403,7 @@ def law(arguments: Namespace) -> None:
     option(
         "--method",
         default="table",
-        help="table (default): the law of the scene; direct: numerical solution "
+        help="table (default): the law of the roller; direct: numerical solution "
         "of the equations at each node, for half-spaces of one relaxation time",
     ),
     output(*_GRID),
@@ -444,7 +444,7 @@ def build(arguments: Namespace) -> None:
         type=int,
         nargs=2,
         metavar=("SPEEDS", "CREEPS"),
-        help="numbers of nodes of speed and of creepage (default: 5 to 13 a decade, and 27)",
+        help="numbers of speeds and of creepages (default: 5 to 13 in a decade of speed, and 27)",
     ),
     output(".nc", ".cdf", ".h"),
 )

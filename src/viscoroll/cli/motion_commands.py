@@ -336,7 +336,7 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
     output(
         ".zarr",
         required=False,
-        more=": the results store; without it: estimate of time and memory, by a trial",
+        more=": the results store; without -o a trial estimates the time and memory of the run",
     ),
     option(
         "--cluster",

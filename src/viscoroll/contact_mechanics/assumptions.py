@@ -194,7 +194,7 @@ UNKNOWN = Validity(
             "",
             "inertia of the deforming bodies is neglected; to compare the speed with the shear "
             "wave speed, give density= to a Material, or to validity of a Cylinder",
-            "the quasi-steady assumption for motions is not checked: give the scene a gamma",
+            "the quasi-steady assumption for motions is not checked: give the Scene gamma=",
             "the surface speeds of the two bodies are not compared: give omega=",
             "Dundurs' constant, the measure of how shear changes the pressure, is not known, as a "
             "Scene does not state the materials: use a Cylinder.  It must be near 0, as for equal "
@@ -202,7 +202,7 @@ UNKNOWN = Validity(
             "the transit frequency (speed divided by contact length) is not compared with the "
             "frequencies of the measurements: give the Cylinder a Material with measured=",
             "no thickness is given: the law is that of a half-space.  It applies to a layer too, "
-            "with 5 % error of the contact length, if the contact is at most "
+            "with an error of the contact length up to 5 %, if the contact is at most "
             f"{THICK_LIMIT:.2g} times as long as the layer is thick",
             "the effect of shear on the pressure is estimated for layers only; for half-spaces see "
             "Dundurs' constant in the line 'bodies'",
@@ -274,8 +274,8 @@ def assess_small_contact(reach: Any) -> Assumption:
     return Assumption(
         reach <= REACH_LIMIT,
         reach,
-        f"the contact reaches {far:.2g} R from the axis, up to {REACH_LIMIT} R is allowed: the "
-        f"model takes a parabola for the circle, with an error of {25.0 * far * far:.2g} % there"
+        f"the contact reaches {far:.2g} R from the axis; up to {REACH_LIMIT} R is allowed, as the "
+        f"model replaces the circle by a parabola (error here {25.0 * far * far:.2g} %)"
         + "; reduce the load, or take a stiffer material"
         * (far > REACH_LIMIT),
     )

@@ -294,7 +294,7 @@ class FreeRolling:
         scene = scene.uncoupled  # a free roller has hardly any traction
         refuse_cover(
             scene,
-            "free rolling is not computed, as it depends on the added mass N, which is not known",
+            "this call cannot be made, as it needs the added mass N, which is not known",
         )
         materials: Any
         unit: Any

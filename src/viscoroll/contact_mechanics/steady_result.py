@@ -155,8 +155,8 @@ class Diagnosis(NamedTuple):
             )
         M, V = np.divide(self.maximum, loads.kappa[n])
         return (
-            f"|{name}| = {abs(total):.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest "
-            f"{moment} (at V = {V * speed:.6g}{of_speed})"
+            f"no steady speed: |{name}| = {abs(total):.6g}{of_load} exceeds "
+            f"{M * load:.6g}{of_load}, the largest {moment} (at V = {V * speed:.6g}{of_speed})"
         )
 
 

@@ -236,7 +236,7 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
             "a function of t",
             f"{name} must be a function of t alone, but this function has the parameters "
             f"{parameters}: for a force or torque that is linear in the speeds give vr.Feedback; "
-            "with another controller integrate the motion yourself, by vr.law",
+            "with another controller integrate the motion yourself, calling vr.law",
         ) from None
 
 

@@ -178,7 +178,7 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     both: whether both were given; else neither was.
     """
     sentence = (
-        f"{first} and {second} are both given: give one of the two"
+        f"{first} and {second} are both given: give only one of the two"
         if both
         else f"neither {first} nor {second} is given: give one of the two"
     )
