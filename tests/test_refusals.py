@@ -81,8 +81,8 @@ REFUSED += each(
         "one motion, but torque has shape (2,): use ensemble": {
             "torque": vr.Schedule([0.0, 1.0], [[0.0, 1.0], [0.0, 2.0]])
         },
-        "torque must be a function of t alone, but this function has the parameters (t, V, w): for a "
-        "force or torque that is linear": {"torque": lambda t, V, w: -V},
+        "torque must be a function of t alone, but this function has the parameters (t, V, w): for "
+        "a force or torque that is linear": {"torque": lambda t, V, w: -V},
         "thickness is given | leave rested out": {"roller": COVERED, "rested": True},
     },
     **ROLL,

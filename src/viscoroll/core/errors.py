@@ -389,7 +389,7 @@ _MESSAGES = (
     "the time steps became too short for double precision, since the motion changes too fast: make "
     "an extreme gain, drag, speed or friction smaller, or rtol larger",
     "V and omega are both 0, and the cylinder can start in either direction from there, as mu is "
-    "above 2 R/l0 (l0: contact length at rest): the motion is not unique; lower mu",
+    "above 2 kappa = 2 R/l0 (l0: contact length at rest): the motion is not unique; lower mu",
     "the cylinder became too slow for unsteady=True: the added mass N, by which changes of speed "
     "act on the rolling moment, became about as large as the inertia; end the motion earlier, or "
     "leave unsteady=True out",
