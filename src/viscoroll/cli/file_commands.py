@@ -88,7 +88,7 @@ def _named_heading(text: str) -> tuple[str, str]:
     """
     name, _, heading = map(str.strip, text.partition("="))
     if not heading:
-        raise ArgumentTypeError(f"{text!r} must be NAME=HEADING, for example storage=Module 1")
+        raise ArgumentTypeError(f"{text!r} must be NAME=HEADING, for example 'storage=Module 1'")
     return name, heading
 
 
@@ -137,7 +137,7 @@ def _units(text: str) -> Any:
         "--reference",
         type=float,
         metavar="T",
-        help="reference temperature of the master curve, for data at several temperatures",
+        help="reference temperature of a master curve (of several temperatures), degrees Celsius",
     ),
     option(
         "--wlf",
@@ -148,7 +148,7 @@ def _units(text: str) -> Any:
         "--on",
         choices=("both", "storage"),
         default="both",
-        help="moduli whose overlap determines the shift (default: both)",
+        help="moduli whose overlap determines the shift of the curves (default: both)",
     ),
     option("--modes", type=int, help="largest number of terms (default: as few as --misfit needs)"),
     option(

@@ -424,7 +424,7 @@ def verify(arguments: Namespace) -> int:
         "-n",
         type=int,
         default=4096,
-        help="base points, rounded up to a power of two (default: 4096); a base point "
+        help="number of base points, rounded up to a power of two (default: 4096); a base point "
         "takes a motion for every uncertain input and two more",
     ),
     add_table,

@@ -192,10 +192,10 @@ UNKNOWN = Validity(
         for sentence in (
             "",
             "",
-            "inertia of the deforming bodies is neglected; to compare the speed with the shear "
-            "wave speed, give density= to a Material, or to validity of a Cylinder",
+            "inertia of the bodies is neglected, which is not checked: give density= to a "
+            "Material, or to validity of a Cylinder, to find the shear wave speed",
             "the quasi-steady assumption for motions is not checked: give the Scene gamma=",
-            "the surface speeds of the two bodies are not compared: give omega=",
+            "the surface speeds of both bodies are not compared: give the angular velocity omega=",
             "Dundurs' constant, the measure of how shear changes the pressure, is not known, as a "
             "Scene does not state the materials: use a Cylinder.  It must be near 0, as for equal "
             "materials, unless pressure and shear are solved together",
@@ -417,11 +417,11 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
         low, high = data.transit_band
         holds = holds & (low <= frequency) & (frequency <= high) & (data.misfit <= MISFIT_LIMIT)
         sentence += f"; {body} was measured from {data}"
-        sentence += f", above the allowed {MISFIT_LIMIT:.0%}: the fit misses its data" * (
+        sentence += f"; this misfit is above the allowed {MISFIT_LIMIT:.0%}" * (
             data.misfit > MISFIT_LIMIT
         )
     if (known := error[np.isfinite(error)]).size:
-        sentence += f"; inside that band M is accurate to +-{100.0 * known.max():.3g} %"
+        sentence += f"; at frequencies inside M is accurate to +-{100.0 * known.max():.3g} %"
     return Assumption(holds, frequency, sentence)
 
 
