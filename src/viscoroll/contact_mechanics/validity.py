@@ -426,7 +426,7 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
         f"M up to {largest(error_of_M):.1g} P l0" + beyond * (most > 1.0)
     )
-    sentence = f"the law neglects how shear changes the pressure: against method='coupled' {errors}"
+    sentence = f"the effect of shear on pressure is approximate: against method='coupled' {errors}"
     if scene.tabulated:
         sentence = (
             "shear changes the pressure: states with traction are from a table of both solved "
