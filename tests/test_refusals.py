@@ -82,7 +82,7 @@ REFUSED += each(
             "torque": vr.Schedule([0.0, 1.0], [[0.0, 1.0], [0.0, 2.0]])
         },
         "torque must be a function of t alone, but this function has the parameters (t, V, w): for "
-        "feedback": {"torque": lambda t, V, w: -V},
+        "a force or torque that is linear": {"torque": lambda t, V, w: -V},
         "thickness is given | leave rested out": {"roller": COVERED, "rested": True},
     },
     **ROLL,

@@ -83,7 +83,9 @@ REFUSED = [
             "units of V = missing | m/s or a multiple of it, or 1 of a": OTHER_GRID.assign_coords(
                 V=OTHER_GRID.V.drop_attrs()
             ),
-            "is not a grid of a law, since V does not increase over two": OTHER_GRID.isel(V=[0]),
+            "grid of a law, since V is not a list of two or more increasing": OTHER_GRID.isel(
+                V=[0]
+            ),
         },
     ),
     *files(
@@ -101,7 +103,7 @@ REFUSED = [
             "column 'j' of j.nc: the file is damaged, or is not a .nc file": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{file("j", "j.nc")}", column = "j" }}'
             ),
-            "is the law of every alpha": lambda: vr.tables.export(
+            "has the laws of a range of alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"
             ),
             "line 8: [material] T_ref cannot be uncertain; E, nu, prony, creep, temperature, "
@@ -252,7 +254,7 @@ REFUSED = [
             ),
             "has the number 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
             "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
-            "line 4 | : must have low < high and a probability above 0": (
+            "line 4 | : must be [low, high] with a probability above 0": (
                 "a preset",
                 "[0.05, 0.6]",
                 "[-0.05, 0.0]",

@@ -92,7 +92,7 @@ WARNED = {
         lambda: UNSURE.ensemble(3.0, 3.0, 1.0),
         lambda: ONE.replace(alpha=[2.0, 11.0]).ensemble(1.0, 1.0, 1.0),
     ],
-    "it starts in full slip at a creep": [
+    "the cylinder starts in full slip with a creep": [
         lambda: vr.Scene(11.0, 10.0, 0.02, 0.1).roll(0.5, -0.5, 0.001)
     ],
     "the model does not hold for this contact: speeds exceed the shear wave speed": [

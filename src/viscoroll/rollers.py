@@ -281,9 +281,7 @@ class Cylinder(Methods):
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
-            raise described_error(
-                solid, "given beside material", "left out, or the material left out"
-            )
+            raise described_error(solid, "given beside material", "left out, or leave out material")
         if material is None and missing:
             sentence = (
                 f"{missing} not given: give all of E, nu, T_epsilon and T_sigma, or a material"

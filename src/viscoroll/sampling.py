@@ -159,7 +159,7 @@ def _is_distribution(name: str, value: Any) -> bool:
     try:
         check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
-        allowed = "a finite number, or a distribution of finite median as scipy.stats.norm(0, 1)"
+        allowed = "a finite number, or a distribution with finite median, as scipy.stats.norm(0, 1)"
         raise ParameterError(name, describe_value(value), allowed) from None
     return random
 

@@ -223,7 +223,7 @@ def test_a_warning_is_one_line(capsys):
         assert code_of("roll PAPER --V0 1.5 --omega0 0.5 --t 1e-6") == 0
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(
-        "viscoroll: warning: the model does not hold for this motion: it is too slow "
+        "viscoroll: warning: the model does not hold for this motion: the cylinder is too slow "
     )
 
 

@@ -89,7 +89,7 @@ def test_words_say_what_a_column_is(headings, kind, name, value):
 ASKED = each(
     partial(data, kind="coastdown"),
     {
-        "may be of turns": [
+        "may be turns": [
             "t [s],omega [1/min]\n0,2\n0,2",
             "t [s],Drehzahl [1/s]\n0,2\n0,2",
             "t [s],rpm\n0,2\n0,2",

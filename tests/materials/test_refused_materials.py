@@ -99,7 +99,7 @@ REFUSED = [
                 1e6, 0.5, T_ref=xr.DataArray(1.0, attrs={"units": "1/Hz"})
             ),
             "shift = <class | a function of the temperature": lambda: TREAD.at(20.0, shift=vr.WLF),
-            "has shape (3,): must be a number or one for each motion, count = 2": lambda: (
+            "has shape (3,): must be a number, or 2 numbers, one for each motion": lambda: (
                 lambda run: roll_inputs(run, dict.fromkeys(run.inputs.medians, [1.0] * 3), 2)
             )(read_run(vr.datasets.path("run.toml"))),
             "temperature = -31.6 | above T0 - C2 = -31.6 °C, where the WLF shift": lambda: (
@@ -130,7 +130,7 @@ REFUSED = [
             "a name in C (letters, digits, _; no digit first": lambda: vr.tables.export(
                 vr.tables.law(11.0), "my-rubber.h"
             ),
-            "no word of C or C++, nor vr_...) with .h, as rubber.h": lambda: vr.tables.export(
+            "no keyword of C or C++, nor vr_...) with .h, as rubber.h": lambda: vr.tables.export(
                 vr.tables.law(11.0), "double.h"
             ),
             "'V': ..., 'omega': ...": lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1),

@@ -90,7 +90,7 @@ def test_two_ways_on_are_none(name):
     """Where the law lets V go either way it is said so; at mu <= 2 kappa there is one way on."""
     ratio, force, slope = TWO_WAYS[name]
     drive = {"force": force, "omega": vr.Schedule([0.0, 1.0], [0.0, slope])}
-    with pytest.warns(RuntimeWarning, match="two directions"):
+    with pytest.warns(RuntimeWarning, match="in either direction"):
         m = vr.Scene(11.0, 0.5 / ratio, 1.0, 1.0).roll(0.0, None, [0.0, 1.0], **drive)
     assert m.status == vr.MotionStatus.UNDECIDED
     assert m.V[0] == 0.0

@@ -107,7 +107,7 @@ def test_the_last_state_is_told_where_the_last_step_cannot_be_repeated():
         m = roller.roll(0.05, 1.0, np.linspace(0.0, 20.0, 201), unsteady=True, rested=True)
     last = np.flatnonzero(m.regime >= 0)[-1]
     assert (
-        f"the last state was t = {m.t[last]:.6g} s in partial slip, V = {m.V[last]:.6g} m"
+        f"the last state was t = {m.t[last]:.6g} s (regime partial slip), V = {m.V[last]:.6g} m"
         in m.message
     )
 
@@ -157,7 +157,7 @@ def test_a_short_rest_costs_less(t_w):
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the look-up of a motion so slow
 def test_caught_in_the_imprint():
     """V = 1.3 is 4.3 cm/s, of which validity says it too."""
-    with pytest.warns(RuntimeWarning, match="too slow to leave the indentation of its standstill"):
+    with pytest.warns(RuntimeWarning, match="too slow at the start to leave the indentation"):
         m = ROLLER.roll(1.3, 1.3, T[:3], rested=True, unsteady=True)
     V0 = np.array([1.3, 30.0, -1.3])
     e = ROLLER.ensemble(V0, V0, T[:3], rested=True, unsteady=True)
@@ -175,6 +175,6 @@ def test_a_standstill_is_refused_where_it_would_have_no_effect(V0):
     """From V0 = omega0 = 0 the drive must first break the cylinder away, which is not known; other
     starts act.
     """
-    words = "starts at V0 = omega0 = 0 and must yet break away"
+    words = "starts at V0 = omega0 = 0"
     refused(lambda: ROLLER.roll(V0, 0.0, T, force=0.01, rested=3600.0), words)
     refused(lambda: ROLLER.ensemble([1.3, V0], [1.3, 0.0], T, force=0.01, rested=True), words)

@@ -74,7 +74,7 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
     data[-1] ^= 1
     (store / "motions/V/7.0").write_bytes(data)
     export = partial(export_netcdf, store, tmp_path / "all.nc")
-    refused_file(export, "1 of 12 blocks ", "repairs it")
+    refused_file(export, "1 of 12 blocks ", "to repair ")
     assert not (tmp_path / "all.nc").exists()
     (store / "V_mean/0").write_bytes(b"")
     refused_file(lambda: open_run(store), "V_mean/0")
@@ -145,7 +145,7 @@ def test_other_folders_are_refused(tmp_path, whole):
         (partial(run_ensemble, run, whole), "another run file: give another folder"),
         (
             partial(run_ensemble, run, thesis),
-            "no results store, as it has chapter.tex: give another folder",
+            "is no results store (it contains chapter.tex): give another folder",
         ),
         (partial(verify, thesis), "not a results store"),
     ):
@@ -186,7 +186,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch
         with disk_for(writes, monkeypatch):
             run_ensemble(run, smaller, threads=1)
         assert not verify(smaller).ok
-        refused_file(lambda: open_run(smaller), "repairs it")
+        refused_file(lambda: open_run(smaller), "to repair it")
     run_ensemble(run, smaller)
     assert content(smaller) == content(whole)
 
@@ -204,7 +204,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch
             "n = 1200",
             "a Latin hypercube, whose points depend on n: keep n = 350",
         ),
-        ('design = "sobol"', "n = 1200", "which is even only for a power of two: set n = 2048"),
+        ('design = "sobol"', "n = 1200", "whose n should be a power of two: set n = 2048"),
         ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
         ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
     ],
@@ -262,8 +262,5 @@ def test_an_interrupt_answers_at_once(tmp_path):
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
-    kept = (
-        "interrupted: 0 of 4 blocks are complete and are kept in store.zarr; to resume, repeat "
-        "the run"
-    )
+    kept = "interrupted: 0 of 4 blocks were added to store.zarr; to resume, repeat the run"
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

@@ -92,7 +92,7 @@ def test_curves_are_dashed_beyond(here):
         assert np.array_equal(seen, (x >= low) & (x <= high))
         assert (seen | beyond).all()
         assert np.count_nonzero(seen & beyond) == 1
-        assert "dashed: outside the measured band" in figure.get_suptitle()
+        assert "dashed: outside the measured frequencies" in figure.get_suptitle()
     assert "dashed" not in replace(MEASURED, measured=None).plot().get_suptitle()
 
 

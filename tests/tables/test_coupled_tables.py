@@ -165,7 +165,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     assert not grid.steady(torque=vr.Feedback(5.0, V=-0.1)).V.size  # 50 is beyond the grid
     assert abs(grid.contact(0.1, delta=0.0).delta_0) < tol.GRID_MOTION
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
-    refused(lambda: grid.validity(0.1), "the roller of its materials (not of a grid) with coupled")
+    refused(lambda: grid.validity(0.1), "A roller of materials (not of a grid) with coupled")
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")

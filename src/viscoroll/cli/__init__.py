@@ -101,8 +101,8 @@ def warm_up(arguments: argparse.Namespace) -> None:
         if count % 6 == 5:  # the compiler leaves some 30 MB a call behind; collecting takes 0.7 s
             gc.collect()
         call()
-    where = f"{len(calls)} kinds of calls are in {cache_folder.cache_root()}"
-    print(f"the compiled functions of {where}, after {time.perf_counter() - start:.1f} s")
+    where = f"{len(calls)} kinds of calls, now in {cache_folder.cache_root()}"
+    print(f"functions are compiled for {where} (this took {time.perf_counter() - start:.1f} s)")
 
 
 def _calls() -> dict[str, Callable[[], Any]]:

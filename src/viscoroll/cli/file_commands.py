@@ -71,8 +71,8 @@ def show(arguments: Namespace) -> None:
                 "J_i": series.J,
                 "T_i [s]": series.T * T,
             }
-            heading = "Slow rolling on the same material: moment M / load P = V T_mean in m, "
-            heading += f"T_mean = {series.T_mean * T:.6g} s"
+            heading = "Slow rolling on a half-space of this material: M/P = V T_mean (M: rolling "
+            heading += f"moment, P: load), with T_mean = {series.T_mean * T:.6g} s"
             print(as_text(pd.DataFrame(columns), heading))
 
 
@@ -86,7 +86,7 @@ def _named_heading(text: str) -> tuple[str, str]:
     """
     name, _, heading = map(str.strip, text.partition("="))
     if not heading:
-        raise ArgumentTypeError(f"{text!r} must be NAME=HEADING, for example storage=Module 1")
+        raise ArgumentTypeError(f"{text!r} must be NAME=HEADING, for example 'storage=Module 1'")
     return name, heading
 
 
@@ -107,8 +107,8 @@ def _units(text: str) -> Any:
         "--units",
         type=_units,
         metavar="F,M",
-        help="units of frequency and moduli, if the file states none, for "
-        "example Hz,MPa; or in place of those of the file NAME=UNIT,..., for example storage=MPa",
+        help="units of frequency and moduli, if the file states none, for example Hz,MPa; "
+        "or NAME=UNIT,... in place of units that the file states, for example storage=MPa",
     ),
     option(
         "--column",
@@ -116,10 +116,10 @@ def _units(text: str) -> Any:
         metavar="NAME=HEADING",
         action="append",
         default=[],
-        help="quantity and heading of a column, for example storage=Module 1; may be repeated",
+        help="quantity and heading of a column, for example 'storage=Module 1'; may be repeated",
     ),
-    option("--decimal", choices=(".", ","), help="decimal mark (default: as the numbers have it)"),
-    option("--encoding", help="encoding of the file (default: by its first bytes)"),
+    option("--decimal", choices=(".", ","), help="decimal mark (default: found from the numbers)"),
+    option("--encoding", help="encoding of the file (default: found from its first bytes)"),
     option(
         "--mode",
         choices=("tension", "shear"),
@@ -135,22 +135,20 @@ def _units(text: str) -> Any:
         "--reference",
         type=float,
         metavar="T",
-        help="reference temperature of the master curve, for data at several temperatures",
+        help="reference temperature of a master curve (of several temperatures), degrees Celsius",
     ),
     option(
         "--wlf",
         metavar="C1,C2,T0",
-        help="WLF parameters, T0 in degrees Celsius (default: shifts by the overlap of the curves)",
+        help="WLF parameters, T0 in degrees Celsius (default: the curves are shifted to overlap)",
     ),
     option(
         "--on",
         choices=("both", "storage"),
         default="both",
-        help="moduli whose overlap determines the shift (default: both)",
+        help="moduli whose overlap determines the shift of the curves (default: both)",
     ),
-    option(
-        "--modes", type=int, help="largest number of terms of the series (default: by --misfit)"
-    ),
+    option("--modes", type=int, help="largest number of terms (default: as few as --misfit needs)"),
     option(
         "--misfit",
         type=float,
@@ -164,7 +162,7 @@ def _units(text: str) -> Any:
     option(
         "--force",
         action="store_true",
-        help="write the file even if the fit exceeds --misfit, and state that in the file",
+        help="write the file even if the misfit exceeds --misfit, and state that in the file",
     ),
     output(".toml", ".nc", required=False),
 )
@@ -251,13 +249,13 @@ def _wlf(text: str) -> vr.WLF:
     option(
         "file",
         metavar="DATA.toml",
-        help="TOML file with known and unknown parameters, and files of the measurements",
+        help="TOML file that states known and unknown parameters and the files of measurements",
     ),
     option(
         "--starts",
         type=int,
         default=8,
-        help="number of searches from random points in the ranges (default: 8)",
+        help="number of searches: from the given values, and from random points (default: 8)",
     ),
     option("--seed", type=int, default=0, help="seed of the random points (default: 0)"),
     option("--robust", action="store_true", help="give outliers less weight"),
@@ -403,8 +401,8 @@ def law(arguments: Namespace) -> None:
     option(
         "--method",
         default="table",
-        help="table (default): the law of the scene; direct: numerical solution "
-        "of the equations in each node, for half-spaces of one relaxation time",
+        help="table (default): the law of the roller; direct: numerical solution "
+        "of the equations at each node, for half-spaces of one relaxation time",
     ),
     output(*_GRID),
 )
@@ -444,7 +442,7 @@ def build(arguments: Namespace) -> None:
         type=int,
         nargs=2,
         metavar=("SPEEDS", "CREEPS"),
-        help="numbers of nodes of speed and of creepage (default: 5 to 13 a decade, and 27)",
+        help="numbers of speeds and of creepages (default: 5 to 13 in a decade of speed, and 27)",
     ),
     output(".nc", ".cdf", ".h"),
 )
@@ -591,7 +589,7 @@ def fmu(arguments: Namespace) -> None:
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
         text = "an FMU is in SI units: kappa, mu, gamma and j of the dimensionless scene are not "
-        text += "used; set its own parameters, as R, T_ref, mu, load, mass and inertia (= j), in "
+        text += "used; set the parameters of the FMU (R, T_ref, mu, load, mass, inertia = j) in "
         text += "the program that imports it"
         warnings.warn(text, vr.ModelWarning, stacklevel=2)
     _print_size(arguments.output)

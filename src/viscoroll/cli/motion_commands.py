@@ -55,7 +55,7 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
         SCENE,
         option("--V", type=kind, required=True, help=_V_HELP),
         option("--delta", type=kind, help="creepage (omega R - V)/V"),
-        option("--omega", type=kind, help="angular velocity; give it or --delta"),
+        option("--omega", type=kind, help="angular velocity, rad/s for [cylinder]; or --delta"),
     )
 
 
@@ -134,13 +134,18 @@ def stress(arguments: Namespace) -> None:
 @command(
     "roll",
     SCENE,
-    option("--V0", type=float, required=True, help="velocity of the axis at the start"),
-    option("--omega0", type=float, required=True, help="angular velocity at the start"),
+    option("--V0", type=float, required=True, help=f"initial {_V_HELP}"),
+    option(
+        "--omega0",
+        type=float,
+        required=True,
+        help="initial angular velocity, rad/s for [cylinder], else times T_ref",
+    ),
     option(
         "--t",
         type=numbers,
         required=True,
-        help="output times, written as the numbers of `viscoroll contact`",
+        help="output times as LOW:HIGH:COUNT[:log] or 0.1,0.2,0.4; in s for [cylinder]",
     ),
     add_table,
 )
@@ -196,8 +201,8 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
 @command(
     "steady",
     SCENE,
-    option("--force", type=numbers, help="force on the axis along V (default: 0)"),
-    option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
+    option("--force", type=numbers, help="force along V, N/m for [cylinder] (default: 0)"),
+    option("--torque", type=numbers, help="torque along omega, N m/m for [cylinder] (default: 0)"),
     option(
         "--slope",
         type=numbers,
@@ -253,7 +258,7 @@ def steady(arguments: Namespace) -> None:
 @command(
     "heat",
     SCENE,
-    option("--V", type=numbers, help="speed in m/s; without it the speed follows from a load"),
+    option("--V", type=numbers, help="speed in m/s; without it that of steady rolling"),
     option(
         "--ambient",
         type=numbers,
@@ -298,7 +303,7 @@ def heat(arguments: Namespace) -> None:
     option(
         "--omega",
         type=float,
-        help="angular velocity; without it the assumption on creepage is not checked",
+        help="angular velocity, rad/s for [cylinder]; without it the creepage is not checked",
     ),
 )
 def validity(arguments: Namespace) -> None:
@@ -331,7 +336,7 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
     output(
         ".zarr",
         required=False,
-        more=": the results store; without it: estimate of time and memory, by a trial",
+        more=": the results store; without -o a trial estimates the time and memory of the run",
     ),
     option(
         "--cluster",
@@ -419,7 +424,7 @@ def verify(arguments: Namespace) -> int:
         "-n",
         type=int,
         default=4096,
-        help="base points, rounded up to a power of two (default: 4096); a base point "
+        help="number of base points, rounded up to a power of two (default: 4096); a base point "
         "takes a motion for every uncertain input and two more",
     ),
     add_table,

@@ -35,8 +35,8 @@ THICK_LIMIT = 2.0 / 3.0
 LEAST_KAPPA = 1.0
 #: Sentence of the warning for a kappa below :data:`LEAST_KAPPA`.
 NOT_SMALL = (
-    "kappa = R/l0 is below 1: at rest the contact is longer than the radius, and the half-space "
-    "model does not apply (are moduli in Pa and the load in N/m?)"
+    "kappa = R/l0 is below 1: the contact at rest (length l0) is longer than the radius R, too "
+    "long for the model (of a Cylinder: are moduli in Pa and the load in N/m?)"
 )
 #: Largest rise of temperature by a motion, K: a_T of rubber changes by 10 % a kelvin at the most.
 HEAT_LIMIT = 1.0
@@ -190,27 +190,27 @@ UNKNOWN = Validity(
         for sentence in (
             "",
             "",
-            "inertia of the deforming bodies is neglected; to compare the speed with the shear "
-            "wave speed, give density= to a Material, or to validity of a Cylinder",
-            "the quasi-steady assumption for motions is not checked: give the scene a gamma",
-            "the surface speeds of the two bodies are not compared: give omega=",
-            "Dundurs' constant, by which shear changes the pressure, must be 0, as for identical "
-            "materials, unless both are solved together, as of Bodies with poisson=; a scene does "
-            "not state the materials: use a Cylinder",
-            "the transit frequency (speed divided by contact length) is not compared with that of "
-            "the measurements: give the Cylinder a Material with measured=",
-            "no thickness is given: the law is that of a half-space.  It applies to a layer if the "
-            "contact is at most "
-            f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
+            "inertia of the bodies is neglected, which is not checked: give density= to a "
+            "Material, or to validity of a Cylinder, to find the shear wave speed",
+            "the quasi-steady assumption for motions is not checked: give the Scene gamma=",
+            "the surface speeds of both bodies are not compared: give the angular velocity omega=",
+            "Dundurs' constant, the measure of how shear changes the pressure, is not known, as a "
+            "Scene does not state the materials: use a Cylinder.  It must be near 0, as for equal "
+            "materials, unless pressure and shear are solved together",
+            "the transit frequency (speed divided by contact length) is not compared with the "
+            "frequencies of the measurements: give the Cylinder a Material with measured=",
+            "no thickness is given: the law is that of a half-space.  It applies to a layer too, "
+            "with an error of the contact length up to 5 %, if the contact is at most "
+            f"{THICK_LIMIT:.2g} times as long as the layer is thick",
             "the effect of shear on the pressure is estimated for layers only; for half-spaces see "
-            "Dundurs' constant in the line bodies",
+            "Dundurs' constant in the line 'bodies'",
             "the state must be plane strain (a long cylinder, or one between walls) or plane "
             "stress (a thin disc)",
-            "the strain of the contact is not compared with that of the measurements: a scene does "
-            "not state the materials, use a Cylinder",
-            "each body has one temperature: Cylinder.temperature finds that of long rolling, "
-            "vr.uniform_temperature tells whether one suffices for a body; to check that of a "
-            "motion, call its validity(capacity=) with the heat stored per kelvin",
+            "the strain of the contact is not compared with that of the measurements, as a Scene "
+            "does not state the materials: use a Cylinder",
+            "each body is taken to have one temperature.  Cylinder.temperature gives that of long "
+            "rolling, vr.uniform_temperature tells whether a body has nearly one, and validity("
+            "capacity=) of a motion gives its rise (capacity: heat stored in J/(m K))",
         )
     )
 )
@@ -219,8 +219,8 @@ UNKNOWN = Validity(
 UNKNOWN_OF_COVERS = Assumption(
     None,
     None,
-    "the quasi-steady assumption is not checked on a layer of finite thickness, since the added "
-    "mass N of speed changes is not computed there; states at a constant speed do not need N",
+    "the quasi-steady assumption is not checked on a layer of finite thickness, since the check "
+    "needs the added mass N, which is not computed there; N matters only while the speed changes",
 )
 
 
@@ -272,8 +272,8 @@ def assess_small_contact(reach: Any) -> Assumption:
     return Assumption(
         reach <= REACH_LIMIT,
         reach,
-        f"the contact reaches {far:.2g} R from the axis, where the parabola in place of the "
-        f"circle has an error of {25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) is allowed"
+        f"the contact reaches {far:.2g} R from the axis; up to {REACH_LIMIT} R is allowed, as the "
+        f"model replaces the circle by a parabola (error here {25.0 * far * far:.2g} %)"
         + "; reduce the load, or take a stiffer material"
         * (far > REACH_LIMIT),
     )
@@ -289,12 +289,14 @@ def assess_position(epsilon: Any) -> Assumption:
     """
     ahead = largest(epsilon)
     where = (
-        "the whole contact lies ahead of the axis, which is no fault: the theory allows it"
+        "the whole contact lies ahead of the axis, which the theory allows: this is no fault"
         if ahead > 1.0
         else "the axis is above the contact"
     )
     return Assumption(
-        epsilon <= 1.0, epsilon, f"epsilon (shift in half contact lengths) = {ahead:.2g}: {where}"
+        epsilon <= 1.0,
+        epsilon,
+        f"shift of the contact epsilon = {ahead:.2g} half contact lengths: {where}",
     )
 
 
@@ -356,7 +358,7 @@ def assess_inertia(wave_ratio: Any, unknown: Sequence[str], decides: bool) -> As
         wave_ratio <= WAVE_LIMIT,
         wave_ratio,
         f"the speed is {100.0 * largest(wave_ratio):.3g} % of the shear wave speed; up to "
-        f"{100.0 * WAVE_LIMIT:g} % is allowed, where inertia changes the load by at most 10 %"
+        f"{100.0 * WAVE_LIMIT:g} % is allowed, at which inertia changes the load by at most 10 %"
         + missing,
     )
 
@@ -382,7 +384,7 @@ def assess_coupling(long: float, instant: float, *, like: bool, solved: bool) ->
         return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not change the pressure")
     sentence = f"Dundurs' constant is {long:.2g} for slow and {instant:.2g} for sudden loading; "
     if solved:
-        sentence += "states with traction are from a table of pressure and shear solved together"
+        sentence += "this is allowed, as pressure and shear are solved together (coupled solution)"
         return Assumption(True, worst, sentence)
     sentence += (
         f"up to {DUNDURS_LIMIT} in magnitude is allowed, as pressure caused by shear is neglected"
@@ -413,11 +415,11 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
         low, high = data.transit_band
         holds = holds & (low <= frequency) & (frequency <= high) & (data.misfit <= MISFIT_LIMIT)
         sentence += f"; {body} was measured from {data}"
-        sentence += f", above the allowed {MISFIT_LIMIT:.0%}: the fit misses its data" * (
+        sentence += f"; this misfit is above the allowed {MISFIT_LIMIT:.0%}" * (
             data.misfit > MISFIT_LIMIT
         )
     if (known := error[np.isfinite(error)]).size:
-        sentence += f"; inside that band M is accurate to +-{100.0 * known.max():.3g} %"
+        sentence += f"; at frequencies inside M is accurate to +-{100.0 * known.max():.3g} %"
     return Assumption(holds, frequency, sentence)
 
 

@@ -297,7 +297,7 @@ class Law:
 
         _, scene, scale = resolve_model(roller, "law")
         refuse_arrays(
-            roller, scene, ("alpha", "kappa", "mu"), "one number, as a law is of one roller"
+            roller, scene, ("alpha", "kappa", "mu"), "one number: vr.law is for one roller"
         )
         table = scene.rolling_law
         assert table is not None

@@ -147,8 +147,8 @@ def field_names(
             refuse_fields(only_table, names, "left out, or computed with method='table'")
         if cover:
             allowed = (
-                "left out: the added mass N is computed for half-spaces alone, with coupled=False "
-                "for those of a Dundurs' constant above 0.05"
+                "left out: the added mass N is computed for half-spaces alone (if their Dundurs' "
+                "constant is above 0.05, give the roller coupled=False)"
             )
             refuse_fields((UNSTEADY,), names, allowed)
     if fields is not None:
@@ -298,8 +298,8 @@ def evaluate_contact(
         raise ParameterError(
             "method",
             "'direct'",
-            "'table' where a material or grid is given: method 'direct' needs one relaxation time, "
-            "by alpha of a Scene, or T_epsilon and T_sigma of a Cylinder",
+            "'table' if a material or grid is given: method 'direct' needs one relaxation time, "
+            "given by alpha of a Scene, or by T_epsilon and T_sigma of a Cylinder",
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
@@ -514,7 +514,7 @@ def refuse_beyond(law: LawTable, u: Any) -> None:
     most = law.coupled.fastest if law.coupled is not None else np.inf
     largest = float(np.max(u, initial=0.0))
     if largest > most * (1.0 + 1e-12):
-        raise OutOfTableError("kappa |V| (V in units of R/T_ref)", largest, 0.0, most)
+        raise OutOfTableError("the speed kappa |V| (V in units of R/T_ref)", largest, 0.0, most)
 
 
 def refuse_overflow(kappa: Any, V: Floats, fastest: float = FASTEST) -> None:
@@ -537,4 +537,4 @@ def refuse_overflow(kappa: Any, V: Floats, fastest: float = FASTEST) -> None:
         largest = (kappa * np.abs(V)).max()
     if largest > fastest:
         allowed = f"at most {fastest:g}: reduce V"
-        raise ParameterError("kappa |V| (V in units of R/T_ref)", f"{largest:g}", allowed)
+        raise ParameterError("the speed kappa |V| (V in units of R/T_ref)", f"{largest:g}", allowed)

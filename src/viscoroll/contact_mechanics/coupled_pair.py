@@ -338,7 +338,7 @@ def pair_of_scene(scene: Any) -> CoupledPair:
     """
     material = scene.material
     if scene.gridded:
-        raise described_error("material", "is a grid of Q and M", "a Prony, Bodies or Cover here")
+        raise described_error("material", "is a grid of Q and M", "a Prony, Bodies or Cover")
     if np.size(scene.alpha) != 1 or scene.material_array is not None:
         shape = np.shape(scene.alpha)
         allowed = "a single material with method='coupled': make a call for each"
@@ -555,5 +555,5 @@ class CoupledRow:
                 raise ConvergenceError(
                     f"contact by method 'coupled': {_REASONS[code]} at kappa |V| = "
                     f"{self.u:g} (V in units of R/T_ref), mu = {self.mu:g}, 2 kappa delta = "
-                    f"{creep:g}; please report it"
+                    f"{creep:g}; please report this defect of viscoroll"
                 )

@@ -113,7 +113,9 @@ def tabulate(
     if count is not None:
         check_integer("nodes of speed", count, 4, 1000)
     if check_integer("nodes of creepage", across, 9, 1001) % 2 == 0:
-        raise ParameterError("nodes of creepage", across, "odd, as they are symmetric about 0")
+        raise ParameterError(
+            "nodes of creepage", across, "an odd number, as the nodes are symmetric about 0"
+        )
     u = speed_nodes(pair, count)
     half = across // 2
     t = np.arange(-half, half + 1) / half  # 0 exactly in the middle

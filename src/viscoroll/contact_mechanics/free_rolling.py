@@ -292,7 +292,7 @@ class FreeRolling:
         scene = scene.uncoupled  # a free roller has hardly any traction
         refuse_cover(
             scene,
-            "leave this call out, as free rolling depends on the added mass N, which is not known",
+            "this call cannot be made, as it needs the added mass N, which is not known",
         )
         materials: Any
         unit: Any

@@ -271,8 +271,8 @@ def _describe_free(free: FreeRolling) -> str:
     text = f"unsteadiness (relative error of V) {value:.2g}, up to {STEADY_LIMIT} is allowed: "
     if value > STEADY_LIMIT:
         return text + (
-            "too slow for the quasi-steady assumption of a motion (contact states and constant "
-            "speeds are valid, their stability is not); the error of V is below 10 % above "
+            "too slow for the quasi-steady assumption of a motion (contact states and steady "
+            "rolling are valid, its stability is not); the error of V is below 10 % above "
             f"{most.speed:.2g}{speed}"
         )
     if not np.isfinite(whole):
@@ -281,13 +281,13 @@ def _describe_free(free: FreeRolling) -> str:
     start = free.start()
     text += f"the coasting distance is {whole:.4g}{length}; the error of V is below "
     if fine.time:  # 0 where the error is above 1 % at the start already
-        text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
+        text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % until rest"
     if fine.speed:
         end = (
             f"down to {most.speed:.2g}{speed}, which is reached after a time of "
-            f"{most.time:.3g}{time}, at a distance of {most.left:.2g}{length} before the end"
+            f"{most.time:.3g}{time}, at a distance of {most.left:.2g}{length} before rest"
         )
-        text += f"10 % {end if most.speed else 'to the end'}"
+        text += f"10 % {end if most.speed else 'until rest'}"
     if start.speed > LARGEST_LOSS * (free.u * free.speed):
         return text + "; after a long standstill the cylinder would not leave its indentation"
     return (
@@ -313,9 +313,7 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     if most <= STEADY_LIMIT:
         return text + "throughout"
     speed = f"{free.reach(STEADY_LIMIT).speed:.2g}{free.units[0]}"
-    below = (
-        "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is below that speed"
-    )
+    below = "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is rolled below it"
     return f"{text}down to {speed}{below}"
 
 
@@ -374,11 +372,11 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     holds = np.all([half / h <= limit for limit, h in layers], axis=0)
     theta = half / cover.thinnest
     sentence = (
-        f"the layer is {np.min(cover.thinnest):.3g} times as thick as the contact at rest is long; "
-        f"half the contact length is up to {largest(theta):.2g} times the thickness, up to "
+        f"the thickness of the layer is {np.min(cover.thinnest):.3g} times the contact length at "
+        f"rest; half the contact length is up to {largest(theta):.2g} times the thickness.  Up to "
         f"{min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
-        "coupled=False, where the contact sticks in front and slips behind; the table of the "
-        "coupled solution, from which states with traction are otherwise, needs no limit"
+        "coupled=False, whose law has stick in front and slip behind; the coupled solution, used "
+        "otherwise for states with traction, has no such limit"
     )
     return Assumption(holds | scene.tabulated, theta, sentence)
 
@@ -421,17 +419,17 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     most = largest(value)
     beyond = (
-        f" where the value of this line is at most 1; here it is up to {most:.2g}, both ends slip, "
-        "and the law does not hold: use method='coupled'"
+        f" if traction.value is at most 1; here it is up to {most:.2g}: the contact slips at both "
+        "ends, and the law does not hold: use method='coupled'"
     )
     errors = (
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
         f"M up to {largest(error_of_M):.1g} P l0" + beyond * (most > 1.0)
     )
-    sentence = f"shear acts back on the pressure; compared with method='coupled' {errors}"
+    sentence = f"the effect of shear on pressure is approximate: against method='coupled' {errors}"
     if scene.tabulated:
         sentence = (
-            "shear acts back on the pressure: states with traction are from a table of both solved "
+            "shear changes the pressure: states with traction are from a table of both solved "
             f"together; with coupled=False {errors}"
         )
     return Assumption((value <= 1.0) | scene.tabulated, value, sentence)

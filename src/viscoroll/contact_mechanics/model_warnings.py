@@ -289,8 +289,8 @@ def _start_faults(
         fastest = max(abs(V0), abs(omega0))
         if fastest > 0.0 and (material is not None or part * fastest > _LEAST_M_OVER_MU * mu):
             faults.append(
-                "it starts in full slip at a creepage of order 1, and while it slides its rolling "
-                "moment is uncertain: it is computed with the speed of the axis for both bodies"
+                "the cylinder starts in full slip with a creepage of 1 or more: until partial slip "
+                "its rolling moment is uncertain, as it is computed with V for both surfaces"
             )
     # the speed at the start, or that at which it begins to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
@@ -301,9 +301,9 @@ def _start_faults(
         and _is_too_slow(material, alpha, u, gamma, j)
     ):
         faults.append(
-            "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more "
-            "than a tenth of the distance to rest (unsteady=True reduces the error; it needs "
-            "half-spaces of one material)"
+            "the cylinder is too slow for the quasi-steady assumption: the error of V exceeds 10 % "
+            "on more than a tenth of the distance to rest (unsteady=True reduces the error; it "
+            "needs half-spaces of one material)"
         )
     return faults
 

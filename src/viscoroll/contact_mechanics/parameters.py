@@ -529,8 +529,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            f"the law is a table over speed and creepage: {why}; or make the roller of its "
-            "materials (not of a grid) with coupled=False, which neglects that shear acts on the "
+            f"the law is a table over speed and creepage: {why}.  A roller of materials (not of a "
+            "grid) with coupled=False has no such table; it neglects how shear changes the "
             "pressure",
         )
 

@@ -131,8 +131,8 @@ class Diagnosis(NamedTuple):
             at = f"at V = {V * speed:.6g}{of_speed}"
             if abs(Q) == mu:
                 return (
-                    f"no single steady state: |Q|/load = {mu:.6g} equals mu, and {at} the cylinder "
-                    "slips steadily at any omega beyond a limit; lower the loads or raise mu"
+                    f"no single steady state: |Q|/load = {mu:.6g} equals mu, so that {at} every "
+                    "omega beyond a limit is steady, in full slip; lower the loads or raise mu"
                 )
             return (
                 f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}, above the friction mu = "
@@ -150,13 +150,13 @@ class Diagnosis(NamedTuple):
             )
         if self.maximum is None:
             return (
-                f"at no speed that was searched does the {moment} equal {name} ({total:.6g}"
-                f"{of_load} at rest)"
+                f"the {moment} equals {name} at no speed that was searched ({name} at rest: "
+                f"{total:.6g}{of_load})"
             )
         M, V = np.divide(self.maximum, loads.kappa[n])
         return (
-            f"|{name}| = {abs(total):.6g}{of_load} exceeds {M * load:.6g}{of_load}, the largest "
-            f"{moment} (at V = {V * speed:.6g}{of_speed})"
+            f"no steady speed: |{name}| = {abs(total):.6g}{of_load} exceeds "
+            f"{M * load:.6g}{of_load}, the largest {moment} (at V = {V * speed:.6g}{of_speed})"
         )
 
 

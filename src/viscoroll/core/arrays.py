@@ -173,7 +173,7 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
     if not has_no_unit(value):
         plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
-            sentence = f"{name} is a masked array: give {name}.filled(VALUE) or {name}.compressed()"
+            sentence = f"{name} is a masked array: give {name}.filled(0.0), or {name}.compressed()"
             raise ParameterError(name, "a masked array", "plain", sentence)
     try:
         array = np.asarray(plain)

@@ -77,14 +77,14 @@ class Schedule:
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
-            allowed = "(k,) or (n, k), both of the same k times, with a row for each of n motions"
+            allowed = "(k,) for k times, or (n, k) for n motions; both of the same k"
             raise ParameterError("shapes of a Schedule", shapes, allowed)
         for wrong, found, allowed in (
-            (times[..., 1:] < times[..., :-1], "fall after {:.6g}", "in ascending order"),
+            (times[..., 1:] < times[..., :-1], "decrease after {:.6g}", "in ascending order"),
             (
                 times[..., 2:] == times[..., :-2],
                 "contain {:.6g} three times",
-                "given once, or twice for a jump",
+                "different times, or the same one twice for a jump",
             ),
         ):
             if wrong.any():
@@ -139,7 +139,7 @@ class Feedback:
             _check_field(self, name)
             if np.ndim(gain := getattr(self, name)) > 1:
                 raise shape_error(
-                    name, np.shape(gain), "one gain, or an array (n,) with a gain for each motion"
+                    name, np.shape(gain), "one number, or an array (n,) with a gain for each motion"
                 )
 
     @property
@@ -235,8 +235,8 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
             function,
             "a function of t",
             f"{name} must be a function of t alone, but this function has the parameters "
-            f"{parameters}: for feedback of the speeds give vr.Feedback; with another controller "
-            "call vr.law in an integrator of your own",
+            f"{parameters}: for a force or torque that is linear in the speeds give vr.Feedback; "
+            "with another controller integrate the motion yourself, calling vr.law",
         ) from None
 
 
@@ -318,8 +318,8 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
                 name,
                 "a function",
                 "a number",
-                f"{name} is a function of t, which serves a single cylinder: make a call for "
-                f"each cylinder, or give {name} as numbers or a Schedule",
+                f"{name} is a function of t, which is allowed for a single cylinder only: make a "
+                f"call for each cylinder, or give {name} as numbers or a Schedule",
             )
         require_time_argument(name, value)
         return lambda t: (
@@ -521,7 +521,7 @@ def strip_labels(given: Named, units: HasUnits) -> tuple[Named, Labels | None]:
     if plain or (arrays and series):
         names = ", ".join((*labelled, *plain))
         raise ParameterError(
-            names, "mixed", "alike", f"{names} differ: give all as xarray, pandas or plain arrays"
+            names, "mixed", "alike", f"{names} are mixed: give all from xarray, pandas or numpy"
         )
     values, labels = _from_xarray(arrays) if arrays else _from_pandas(series)
     return given | values, labels

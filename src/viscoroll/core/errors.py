@@ -178,7 +178,7 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
     both: whether both were given; else neither was.
     """
     sentence = (
-        f"{first} and {second} are both given: give one of the two"
+        f"{first} and {second} are both given: give only one of the two"
         if both
         else f"neither {first} nor {second} is given: give one of the two"
     )
@@ -383,18 +383,18 @@ class MotionStatus(enum.IntEnum):
 
 _MESSAGES = (
     "reached the last output time",
-    "|V| and R |omega| fell below the rest threshold",
+    "came to rest: |V| and R |omega| fell below the speed rest",
     "max_steps steps did not suffice up to the last output time: raise max_steps, shorten the "
-    "motion, or give a larger rtol (of no use where a speed grows without bound)",
+    "motion, or give a larger rtol (if a speed grows without bound, only shorten the motion)",
     "the time steps became too short for double precision, since the motion changes too fast: make "
     "an extreme gain, drag, speed or friction smaller, or rtol larger",
-    "V and omega were both 0, from where the motion is not unique: as mu is above 2 kappa (2 R "
-    "divided by the contact length at rest), the cylinder can start in two directions",
-    "the cylinder became too slow for unsteady=True: the added mass N of speed changes became as "
-    "large as the inertia (gamma N reached 1 + j, or -(1 + j)/2), or so large that neither partial "
-    "slip, where N acts, nor full slip can follow",
-    "the cylinder is too slow to leave the indentation of its standstill (rested), which would "
-    "take more than seven tenths of the kinetic energy",
+    "V and omega are both 0, and the cylinder can start in either direction from there, as mu is "
+    "above 2 kappa = 2 R/l0 (l0: contact length at rest): the motion is not unique; lower mu",
+    "the cylinder became too slow for unsteady=True: the added mass N, by which changes of speed "
+    "act on the rolling moment, became about as large as the inertia; end the motion earlier, or "
+    "leave unsteady=True out",
+    "the cylinder is too slow at the start to leave the indentation of the standstill (rested): "
+    "this would take more than 70 % of the kinetic energy; raise V0, or leave rested out",
 )
 
 

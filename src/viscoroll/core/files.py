@@ -107,7 +107,7 @@ def replace_file(path: FilePath) -> Iterator[Path]:
                 (target.is_dir(), "a directory"),
                 (target.exists() and not target.is_file(), "not a regular file"),
                 (target.exists() and not os.access(target, os.W_OK), "read-only"),
-                (not target.parent.is_dir(), "in a folder that does not exist; make it first"),
+                (not target.parent.is_dir(), "in a folder that does not exist; make the folder"),
             ):
                 if wrong:
                     raise FileError(path, f"cannot be written: it is {problem}")
@@ -223,14 +223,14 @@ def read_sealed(path: FilePath, max_bytes: int, kind: str, remedy: str) -> bytes
     file = as_path(path)
     with as_file_error(path, "cannot be read", f": it must be a {kind}"):
         if file.is_file() and file.stat().st_size > max_bytes:
-            raise FileError(path, f"is not a {kind}: it is larger than {max_bytes} bytes")
+            raise FileError(path, f"is larger than {max_bytes} bytes, which no {kind} is")
         content = file.read_bytes()
     if content.startswith(b"CDF") and kind != "law or grid":
-        problem = "is netCDF-3, which viscoroll writes for other programs and does not read"
-        raise FileError(path, f"{problem}: write it as netCDF-4 (.nc); it must be a {kind}")
+        problem = "is netCDF-3, which viscoroll writes for other programs but cannot read"
+        raise FileError(path, f"{problem}: give a {kind} in netCDF-4 (.nc)")
     if seal_matches(content) is False:
         raise FileError(
-            path, f"is damaged: its bytes differ from the checksum at their end; {remedy}"
+            path, f"is damaged: its content differs from the checksum at its end; {remedy}"
         )
     return content
 
@@ -369,7 +369,7 @@ def _finite(path: FilePath, text: str) -> float:
     Raises FileError for a number beyond the doubles, as 1e400, which Python reads as infinite.
     """
     if math.isinf(number := float(text)) and "inf" not in text:
-        raise FileError(path, f"has the number {text}, beyond 1.8e308: write inf if that is meant")
+        raise FileError(path, f"has the number {text}, beyond 1.8e308: write inf for infinity")
     return number
 
 
@@ -385,7 +385,7 @@ def _advise_on_comma(text: str, problem: str) -> str:
         line = text.split("\n")[int(number[1]) - 1]
         without_lists = re.sub(r"\[[^\]]*\]", "", line)
         if comma := re.search(r"=\s*([-+]?[\d.]+,\d+)", without_lists):
-            return f"; {comma[1]} must have a decimal point"
+            return f"; write {comma[1]} with a decimal point"
     return ""
 
 

@@ -245,7 +245,7 @@ CYCLES = re.compile(
     r"(?i)hz|hertz|count|[cr]p[ms]|rad|rev|cyc|circ|turn|osc|giri|tours|\b(?:[ucr]|tr|umdr)/|upm|u\s*min|deg|gon|arc|°"
 )
 #: Remark on an angular velocity in a unit that is none of these, as 1/min.
-TURNS = ", which may be of turns (write rpm or rev/s) or of radians (write rad/s)"
+TURNS = ", which may be turns (write rpm or turn/s) or radians (write rad/min or rad/s)"
 
 
 @lru_cache(maxsize=1)
@@ -429,7 +429,7 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
     if unit.strip() in _DIMENSIONLESS and target != "rad":
-        raise unit_error(name, "is in units of 1, without dimension", target)
+        raise unit_error(name, "is without dimension (unit 1)", target)
     try:
         factor, offset = conversion_factor(unit, target)
     except ParameterError as error:
@@ -522,7 +522,7 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     # a row of a table has fewer columns than are searched
     if index is not None and any(map(_title_unit, index[:100])):
         raise described_error(
-            name, "is a row of a table, with units in its index", "a column of it, or a number"
+            name, "is a row of a table (its index has units)", "a column of a table, or a number"
         )
     # pint's type of columns has its numbers and their unit in ``quantity``
     data = (

@@ -73,7 +73,7 @@ def copy_files(folder: FilePath) -> list[Path]:
         Path(folder).mkdir(parents=True, exist_ok=True)
         for copy, content in contents.items():
             if copy.exists() and copy.read_bytes() != content:
-                raise FileError(copy, "exists with other content: name another folder")
+                raise FileError(copy, "exists already, with other content: name another folder")
     for copy, content in contents.items():
         if not copy.exists():
             write_bytes(copy, content)

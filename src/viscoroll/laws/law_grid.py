@@ -87,7 +87,7 @@ class LawGrid:
     scale: Scale
 
     def __repr__(self) -> str:
-        return f"LawGrid({self.title}; for vr.law alone, or as the material of a Scene)"
+        return f"LawGrid({self.title}; for vr.law, or as the material of a Scene)"
 
     def table(self, kappa: float) -> LawTable:
         """Return the law for motions of a scene; of a grid in SI units times are in s, speeds over
@@ -103,7 +103,7 @@ class LawGrid:
             raise described_error(
                 "material",
                 "is a grid without mu, or without full slip at the first and the last delta",
-                "a grid with both for a Scene; vr.law takes any grid",
+                "a grid with both, as the material of a Scene; vr.law takes any grid",
             )
         # rows hold M in N for kappa = 1: a table has kappa M/(P R)
         of_moments = kappa / (self.load * self.R)
@@ -171,7 +171,9 @@ def check_alpha(alpha: Any, ends: Any, source: Any) -> float:
     low, high = ends
     if alpha is not None and low <= (number := check_number("alpha", alpha)) <= high:
         return number
-    raise ParameterError("alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], as in {source}")
+    raise ParameterError(
+        "alpha", alpha, f"a number in [{low:.15g}, {high:.15g}], the range of {source}"
+    )
 
 
 def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGrid | None:
@@ -222,7 +224,7 @@ def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGr
         raise _no_law(
             path,
             "it has neither the variable M (the rolling moment at each V) nor both M_half_space "
-            "and M_cylinder: add it, or rename the moment to M",
+            "and M_cylinder: add M, or rename the moment to M",
         )
     for name in names:
         variable = table[name]
@@ -233,7 +235,7 @@ def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGr
             raise _no_law(path, found)
         refuse_filled(variable, path)
         if name in ("V", "delta") and not (variable.size > 1 and increases(variable.values)):
-            raise _no_law(path, f"{name} does not increase over two nodes or more")
+            raise _no_law(path, f"{name} is not a list of two or more increasing numbers")
     with _told_of(path):
         table = _in_si(table)
         check_nodes(table, path)
@@ -263,7 +265,7 @@ def _told_of(path: Any) -> Iterator[None]:
     except (KeyError, ValueError, TypeError) as error:
         allowed = "V(V), delta(delta), Q(V, delta) and M(V) or M(V, delta), perhaps over alpha too"
         raise FileError(
-            path, f"is not a grid of a law: must have {allowed}, and a valid_range of numbers"
+            path, f"is not a grid of a law: must have {allowed}; a valid_range must be two numbers"
         ) from error
 
 
@@ -278,9 +280,9 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
     """
     if bad.any():
         first = np.argwhere(bad)[0]
-        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first))
+        place = ", ".join(f"{n} of {dim}" for dim, n in zip(variable.dims, first))
         found = describe_value(variable.values[tuple(first)].item())
-        where = f"{variable.name} = {found} at {place or 'its only node'}"
+        where = f"{variable.name} = {found} at index {place or '0'}"
         raise _no_law(path, f"{where}: must be {allowed}")
 
 
@@ -341,7 +343,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
             allowed = f"in [0, {high:g}]" if high < np.inf else ">= 0"
             _refuse_nodes(table[name], bad, path, allowed)
     Q = table["Q"].transpose(..., "delta")
-    allowed = f"at most {limit:.6g} in size, the friction limit mu P"
+    allowed = f"at most {limit:.6g} in magnitude, the friction limit mu P"
     _refuse_nodes(Q, np.abs(Q.values) > limit * (1.0 + _ROUNDING), path, allowed)
     noise = _NOISE * np.abs(Q.values).max()
     # + 0 Q: in the shape of Q

@@ -206,8 +206,8 @@ def parse_law(content: Content, path: Any) -> LawTable:
     if kind == AXIS:
         raise FileError(
             path,
-            "is the law of every alpha, not of one material: for alpha = 11, as an example, give "
-            "vr.tables.law(vr.load_law(path, alpha=11.0))",
+            "has the laws of a range of alpha, not of one material: in Python give for example "
+            "vr.tables.law(vr.load_law(path, alpha=11.0)); or make a law of a file with that alpha",
         )
     with _refuse_incomplete(path):
         given, pair = _parse_bodies(attributes["material"], path)

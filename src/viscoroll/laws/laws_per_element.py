@@ -275,7 +275,7 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
                 cover_rows(covers.of_thickness(thin, np.max(covers.nu)))
                 reason = (
                     f"at least {2.0 ** (exponent + 1.0)} in a call with several thicknesses or "
-                    "loads, between which laws are interpolated: make one call for each, or take "
+                    "loads, as laws are interpolated between them: make one call for each, or take "
                     "a thicker layer or a smaller load (l0: contact length at rest of half-spaces)"
                 )
                 raise ParameterError("thickness/l0", f"{thin:.6g}", reason) from error

@@ -246,7 +246,7 @@ def prepare_drive(
     for name, start in starts.items():
         if start is None:
             raise ParameterError(
-                f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it"
+                f"{name}0", None, "a number", f"{name}0 is missing: give it, or prescribe {name}="
             )
     return checked_drive, *start_speeds(*starts.values())
 

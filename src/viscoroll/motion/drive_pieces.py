@@ -355,7 +355,7 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
             raise dimensionless_error(
                 sampled.name,
                 f"{sampled.name} is a function that piecewise polynomials cannot approximate near "
-                f"t = {{}} (after {sampled.taken} values of it): must be smooth except for "
+                f"t = {{}} (with {sampled.taken} values of it): must be smooth except for "
                 "jumps and corners, or be given as a Schedule",
                 "t",
                 start,

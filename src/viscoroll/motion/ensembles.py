@@ -263,7 +263,7 @@ class Ensemble(RollResult):
                 low, middle, high = (
                     np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
                 )
-                text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
+                text = f"at the end: median {middle:.6g}, 90 % between {low:.6g} and {high:.6g}"
                 rows.append(SummaryRow(name, text, self._unit(name)))
         rows.append(
             SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()} motions")

@@ -103,7 +103,7 @@ def solve_batch(
             else "motions have a load, a brake, a drag, a prescribed speed or unsteady=True, or "
             "the law is not that of two half-spaces of one material"
         )
-        raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
+        raise ParameterError("method", "'flow'", f"'auto' or 'integrate' if {which}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
     if mappable and (method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)):

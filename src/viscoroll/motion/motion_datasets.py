@@ -292,8 +292,8 @@ def describe_load(given: Any, unit: str) -> str:
         text = "a function of t"
     elif isinstance(value, Schedule):
         text = (
-            f"schedule of {value.times.size} corners, smallest {value.values.min():.6g}, "
-            f"largest {value.values.max():.6g} {unit}"
+            f"schedule of {value.times.size} times, values from {value.values.min():.6g} "
+            f"to {value.values.max():.6g} {unit}"
         ).rstrip()
     else:
         text = f"{value!s:.60} {unit}".rstrip()
@@ -383,7 +383,7 @@ def _material_variables(materials: Any, count: int) -> Variables:
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")
-        | along("share", materials.share, "the cylinder's part of the long-time compliance")
+        | along("share", materials.share, "the cylinder's part of the sum of long-time compliances")
     )
 
 

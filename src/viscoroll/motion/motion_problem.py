@@ -194,8 +194,8 @@ def make_problem(
             "rest",
             rest,
             "None",
-            f"rest = {rest!r:.60} is one threshold in m/s for all motions, but R or T_ref "
-            "(T_epsilon) differs between them: leave rest out, or give all one R and one T_ref",
+            f"rest = {rest!r:.60} is one speed in m/s for all motions, but R or T_ref (T_epsilon) "
+            "differs between them: leave rest out, or give all the same R and T_ref",
         )
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     if (last := float(end) / scale["t"]) == math.inf:
@@ -214,7 +214,7 @@ def make_problem(
                 resolve,
                 "left out",
                 f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
-                "leave it out",
+                "leave resolve out",
             )
         resolve = check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
     try:
@@ -235,8 +235,8 @@ def make_problem(
             rest,
             "None",
             f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
-            "the motion: leave rest out, or let the load end earlier (switches of a Motion has the "
-            "time at which a brake stops the cylinder)",
+            "the motion: leave rest out, or let the load end earlier (Motion.switches has the time "
+            "at which a brake stops the cylinder)",
         )
     if single and functions is not UNDRIVEN:
         many = {
@@ -321,7 +321,7 @@ def _apply_standstill(
     why = (
         "a speed is prescribed"
         if prescribed
-        else "the cylinder starts at V0 = omega0 = 0 and must yet break away"
+        else "the cylinder starts at V0 = omega0 = 0"
         if np.any((V == 0.0) & (omega0 == 0.0))
         else "the cylinder starts in full slip" * bool(np.any(np.abs(omega0 - V) > limit))
     )
@@ -330,7 +330,7 @@ def _apply_standstill(
             "rested",
             rested,
             "left out",
-            f"rested is given, but {why}: leave rested out, as the loss of the start is not known",
+            f"rested is given, but {why}: leave rested out, as the loss at this start is not known",
         )
     # part of V; V = 0 with omega0 = 0 was refused above, and without a limit any other omega0 slips
     lost = FreeRolling.of_scene(scene, V).start(time / scale["t"]).speed
@@ -478,11 +478,11 @@ def integrate_motions(
 #: Reason: the rolling resistance exceeds the friction.
 STOPS = "the sliding cylinder can reach a steady speed"
 #: Reason: a motion of the slow manifold leaves partial slip.
-FULL_SLIP_RETURNS = "full slip returns"
+FULL_SLIP_RETURNS = "full slip can return after partial slip"
 #: Reason: a motion of a boundary layer leaves partial slip.
 STICK_ENDS = "the cylinder can return from partial slip to full slip"
 #: Reason: numbers that are not finite.
-OUT_OF_RANGE = "its speeds or times exceed the range of double precision"
+OUT_OF_RANGE = "speeds or times exceed the range of double precision"
 
 
 class NoFlowMap(Exception):

@@ -110,7 +110,7 @@ class Motion(RollResult):
         t, V, omega = (
             f"{x} = {float(last[x][0]):.6g} {self._unit(x)}".rstrip() for x in ("t", "V", "omega")
         )
-        return f"{text}; the last state was {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
+        return f"{text}; the last state was {t} (regime {REGIMES[last.regime[0]]}), {V}, {omega}"
 
     @cached_property
     def _step_ends(self) -> Floats:
@@ -294,7 +294,7 @@ class Motion(RollResult):
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
             changes = f"{len(self.switches)}, the last to {last.regime} at {when}"
             if last.regime == "rest" and np.isnan(self.rest_time):
-                changes += ": V fell to 0 in double precision"
+                changes += ": V fell below the least double-precision number"
             rows.append(SummaryRow("changes of regime", changes))
         if self.reversals.size:
             rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
@@ -592,8 +592,8 @@ def roll(
     warn_of_speeds(problem.roller, start[0], motion.V)
     if not motion.success:
         warnings.warn(
-            f"roll: {motion.status.message}; outputs not reached are NaN, and the message of the "
-            "motion gives the last state, if any was reached",
+            f"roll: {motion.status.message}.  Outputs after this are NaN; the last state, if any, "
+            "is in the attribute message of the motion",
             RuntimeWarning,
             stacklevel=2,
         )

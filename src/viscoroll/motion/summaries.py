@@ -219,7 +219,7 @@ class Quantity(NamedTuple):
         """
         if self.part:
             return {
-                "long_name": f"energy {self.part} over the kinetic energy at the start",
+                "long_name": f"energy {self.part}, divided by the kinetic energy at the start",
                 "units": "1",
             }
         return column_attributes(self.column, si)

@@ -162,8 +162,8 @@ def run_ensemble(
                     evaluated += 1
                     advance(motions)
             except KeyboardInterrupt:
-                kept = f"{evaluated} of {run.blocks} blocks are complete and are kept in {path}"
-                raise Interrupted(f"interrupted: {kept}; to resume, repeat the run") from None
+                added = f"{evaluated} of {run.blocks} blocks were added to {path}"
+                raise Interrupted(f"interrupted: {added}; to resume, repeat the run") from None
             store.finish()
     return evaluated
 
@@ -259,7 +259,7 @@ def _executor(
             client = stack.enter_context(_client(distributed, cluster, threads))
             workers = sum(client.nthreads().values())
             if not workers:
-                raise FileError(cluster, "this cluster has no workers: start some by `dask worker`")
+                raise FileError(cluster, "this cluster has no workers: start `dask worker ADDRESS`")
             # not pure: equal calls are evaluated again, since a block may have been lost on disk;
             # a task is given to other workers three times after its worker died
             with client.get_executor(pure=False, retries=3) as pool:
@@ -275,7 +275,7 @@ def _executor(
     ) as error:
         text = " ".join((str(error) or type(error).__name__).split())
         problem = f"the connection to the cluster was lost ({text:.200})"
-        raise FileError(cluster, f"{problem}: the same call or command resumes the run") from error
+        raise FileError(cluster, f"{problem}: repeat the call or command to resume") from error
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
@@ -371,15 +371,15 @@ class Estimate:
         covers take unless that is 0; memory in MB; disk space in MB; size of the trial.
         """
         run = self.run
-        laws = f", {_duration(self.law_seconds)} of it once for the laws of covers"
+        laws = f", of which {_duration(self.law_seconds)} for the contact laws of the covers"
         laws *= self.law_seconds > 0.0
         blocks = f"{run.blocks} block{'s' * (run.blocks != 1)}"
         return (
             f"{run.settings.n} motions in {blocks} of {run.block}, method {run.method}\n"
-            f"time    about {_duration(self.seconds)} on {self.workers} workers{laws}\n"
+            f"time    about {_duration(self.seconds)} on {self.workers} worker(s){laws}\n"
             f"memory  about {self.memory / 1e6:.0f} MB at a time\n"
             f"disk    about {self.stored / 1e6:.1f} MB\n"
-            f"from a trial of {self.trial} motions; nothing was written"
+            f"estimated from a trial of {self.trial} motion(s); nothing was written"
         )
 
 

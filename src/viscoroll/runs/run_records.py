@@ -254,7 +254,7 @@ def _as_bytes(files: Named) -> Files:
 # --- Identity of a store ---
 
 #: Last words of an error about the folder of a store.
-ADVICE = "give another folder (-o), or delete this one"
+ADVICE = "give another folder (option -o of the command), or delete this one"
 
 
 def about(run: Run) -> Named:
@@ -328,12 +328,12 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
         return
     own = json.dumps(_software())
     if (versions := record.about.get("versions", own)) != own:
-        problem = f"was written with other versions, {versions}: finish it with these"
+        problem = f"was written with other software, {versions}: finish it with these versions"
         raise FileError(root, f"{problem}, or {ADVICE}")
     # this run with the number of motions of the store: has it the identity of the store?
     before = run._with_settings(n=max(record.motions, 1))
     if of_a_block or record.run != identity(before):
-        raise FileError(root, f"contains the results of another run file: {ADVICE}")
+        raise FileError(root, f"contains the results of another or earlier run file: {ADVICE}")
     if problem := _no_extension(before, run):
         raise FileError(
             root, f"contains {record.motions} motions of this run file, {problem}, or {ADVICE}"
@@ -358,7 +358,7 @@ def _no_extension(before: Run, run: Run) -> str:
         return f"a Latin hypercube, whose points depend on n: keep n = {before.settings.n}"
     if design == "sobol" and n & (n - 1):
         even = 1 << n.bit_length()
-        return f"drawn by Sobol's sequence, which is even only for a power of two: set n = {even}"
+        return f"drawn by Sobol's sequence, whose n should be a power of two: set n = {even}"
     if run.block != before.block:
         return f"in blocks of {before.block}: add block = {before.block} to [run]"
     if run.method != before.method:

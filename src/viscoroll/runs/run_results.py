@@ -72,7 +72,7 @@ class Verdict:
             lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"]
         if not self.finished:
             lines += ["the summaries are missing or incomplete"]
-        return "\n".join([*lines, "the same `viscoroll ensemble` command repairs it"])
+        return "\n".join([*lines, "to repair the store, repeat the run (`viscoroll ensemble`)"])
 
 
 def verify(path: FilePath) -> Verdict:
@@ -142,7 +142,7 @@ def start_of(root: Path) -> Record:
     if start := read_record(root / RECORDS / "start"):
         return start
     raise FileError(
-        root, "is not a results store, or is damaged: the command or call that wrote it repairs it"
+        root, "is not a results store, or is damaged: repeat the run that wrote it to repair it"
     )
 
 
@@ -321,7 +321,7 @@ class RunResults(Result):
             SummaryRow("path", str(self.path)),
             SummaryRow("drawn by", f"{about['design']}, seed {about['seed']}"),
             SummaryRow(
-                "t", f"{t.size} time{'s' * (t.size != 1)} to {float(t[-1]):.6g}", unit_of(t.attrs)
+                "t", f"{t.size} output time(s), the last {float(t[-1]):.6g}", unit_of(t.attrs)
             ),
         ]
         for name in self.names:
@@ -379,7 +379,7 @@ def open_run(path: FilePath) -> RunResults:
     if faults := problems(root, "end", start.run, start.motions):
         raise FileError(
             path,
-            f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command repairs it",
+            f"{faults[0]} is missing or damaged: repeat `viscoroll ensemble` to repair it",
         )
     # chunks=None: arrays of numpy, read at their use, without dask
     return RunResults(root, xr.open_zarr(root, chunks=None))

@@ -198,13 +198,13 @@ def _warm_bodies(content: Named, numbers: Named, bodies: Named) -> Named:
     heat = content["heat"]
     speed = heat.get("speed", content["start"].get("V0"))
     if speed is None:
-        raise described_error("speed", "is missing", "given in [heat] where [start] has no V0")
+        raise described_error("speed", "is missing", "given in [heat], as [start] has no V0")
     for name, body in bodies.items():
         if isinstance(body, Solid):
             raise described_error(
                 name,
                 "has uncertain numbers",
-                "without these beside [heat], as the temperature is that of one material",
+                "without uncertain numbers, as [heat] finds the temperature of one material",
             )
     ambient = heat["ambient"]
     found = Cylinder(**numbers, **bodies).temperature(

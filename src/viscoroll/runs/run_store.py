@@ -125,7 +125,7 @@ def roll_inputs(
     for name in run.inputs.uncertain:
         if np.shape(values[name]) not in ((), (1,), (count,)):
             raise shape_error(
-                name, np.shape(values[name]), f"a number or one for each motion, count = {count}"
+                name, np.shape(values[name]), f"a number, or {count} numbers, one for each motion"
             )
     content = run.inputs.filled(values)
     settings = run.settings
@@ -326,7 +326,7 @@ class Store:
             refuse_another(root, self.run, record)
         elif others := {path.name for path in root.iterdir()} - {RECORDS, MOTIONS}:
             names = ", ".join(sorted(others)[:3])
-            raise FileError(root, f"is no results store, as it has {names}: give another folder")
+            raise FileError(root, f"is no results store (it contains {names}): give another folder")
 
     def missing(self) -> Iterator[int]:
         """Yield the numbers of the blocks that are missing or damaged, ascending.
@@ -385,7 +385,7 @@ class Store:
             record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
                 problem = f"block {block} was damaged during the run"
-                raise FileError(self.root, f"{problem}: the same command repairs it")
+                raise FileError(self.root, f"{problem}: repeat the run to repair it")
             yield record.summary
 
 
@@ -513,7 +513,7 @@ def locked(root: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise FileError(root, "another process writes here: wait until that process ends") from None
+        raise FileError(root, "is in use by another process: wait until it ends") from None
     except (OSError, NotImplementedError) as error:  # some network disks
         reason = getattr(error, "strerror", None) or error
         raise FileError(root, f"cannot be locked ({reason}): use a local disk") from error

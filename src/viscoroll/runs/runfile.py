@@ -377,14 +377,14 @@ def _check_inputs(run: Run) -> None:
             if any(_fault_of(run, medians | {number.name: end}) for end in ends.tolist()):
                 problem = (
                     f"draws extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}; add "
-                    "truncate = [low, high]"
+                    "truncate = [low, high] to the distribution, or remove rows of the data file"
                 )
             problem = f"{number.name}: {problem}"
             raise section_error(run.path, number.section, number.key, problem) from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
         _check_motions(
-            run, values, "; some draws do this: truncate distributions, or remove rows of files"
+            run, values, " (by some draws: truncate distributions, or remove rows of data files)"
         )
 
 
@@ -519,7 +519,7 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
             problem += suggestion(name, random)
         elif a == b or not is_real(value) or not -1.0 < value < 1.0:
             problem = (
-                f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"
+                f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1), of two different inputs"
             )
         elif pairs.get((b, a), value) != value:
             problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"

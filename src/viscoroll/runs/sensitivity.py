@@ -189,7 +189,7 @@ def _independent_inputs(inputs: Inputs) -> Names:
             )
             allowed = "distributions, or columns of different files: Sobol indices are defined for "
             allowed += "independent inputs only"
-            raise ParameterError(", ".join(names), f"rows of {file}", allowed)
+            raise ParameterError(", ".join(names), f"columns of {file}", allowed)
     return inputs.uncertain
 
 
@@ -240,7 +240,7 @@ def _outcomes(
         each = motions // (len(cube) + 2)
         sentence = (
             f"n = {each} (n is rounded up to a power of two): {motions} motions of {numbers} "
-            f"numbers each would take {size / 1e9:.1f} GB, of which {_MOST_BYTES / 1e9:.1f} GB are "
+            f"numbers each would take {size / 1e9:.1f} GB, but only {_MOST_BYTES / 1e9:.1f} GB are "
             "allowed: take a smaller n, fewer times in t or fewer summaries"
         )
         raise ParameterError("n", each, "smaller", sentence)

@@ -445,7 +445,7 @@ class _Reader:
             interval = (
                 f"truncate = {cut!r:.40}" if "truncate" in table else f"support [{low:g}, {high:g}]"
             )
-            raise self.fault(number, f"{interval}: must have low < high and a probability above 0")
+            raise self.fault(number, f"{interval}: must be [low, high] with a probability above 0")
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: Named) -> Any:
@@ -539,7 +539,7 @@ class _Reader:
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
         if columns and next(iter(columns.values())).size != values.size:
             raise self.fault(
-                number, f"{where} and another one used differ in length: give it a file of its own"
+                number, f"{where} is not as long as other columns used: give it a file of its own"
             )
         columns[number.name] = values
 
@@ -582,7 +582,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
             given = str(dataset[column].attrs.get("units", ""))
         advice = f"give the variable the attribute units, as '{unit}'"
     else:
-        raise ValueError("a file of samples must end in .csv, .nc or .parquet")
+        raise ValueError("the name of the file must end in .csv, .nc or .parquet")
     if values.ndim != 1 or values.size == 0 or values.dtype.kind not in "iuf":
         raise ValueError(
             f"has shape {values.shape} and type {values.dtype}: must be one column of numbers"

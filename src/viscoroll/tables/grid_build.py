@@ -184,7 +184,7 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
         raise ParameterError(
             "what",
             describe_value(what),
-            "a Scene, a Cylinder or the law of half-spaces; if a body is a layer, the Cylinder",
+            "a Scene, a Cylinder, or the law of half-spaces (that of a layer needs its Cylinder)",
         )
     if shape := what.scene().shape:
         raise described_error(
@@ -235,16 +235,16 @@ _SCENE_NUMBERS = ("alpha", "kappa", "mu")
 _CYLINDER_NUMBERS = ("R", "m", "mu", "load")
 #: Attribute ``comment`` of a grid.
 COMMENT = (
-    "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, "
-    "delta_star, delta_0 and beta are even in V; M, its two parts and Q(V, delta) are odd. Let d "
-    "= delta - delta_0(V). In a grid without delta_0, delta_0 = 0, beta is even and Q odd in d, "
-    "and full slip begins at |d| = delta_star(V). In a grid with delta_0 it begins at one d of "
-    "either sign, neither of them delta_star. There beta has a kink; beyond it beta = 0, |Q| = mu"
-    " P. epsilon may exceed 1. A grid is for plots and for look-up blocks of other programs. Do "
-    "not use it where the onset of full slip decides a result: look-up smooths the kink, and "
-    "spline_error and linear_error of Q and beta, which are absolute, occur there. The file of a "
-    "law (viscoroll tables law) is exact at every V, delta, kappa and mu, and has a tenth of the "
-    "size; law.nc, which make tables writes in the sources of viscoroll, holds every alpha."
+    "The table holds V > 0. For V < 0 look up |V| and the same delta, Eqs. (17), (18): lam, "
+    "epsilon, delta_star, delta_0 and beta are those values; M, its two parts and Q change their "
+    "sign. In a grid without delta_0, full slip begins at |delta| = delta_star(V); for -delta "
+    "beta is the same, and Q changes its sign. In a grid with delta_0, full slip begins at one "
+    "delta on each side of delta_0(V), and neither is at the distance delta_star from it. In full "
+    "slip beta = 0 and |Q| = mu P. epsilon may exceed 1. A grid is for plots and for look-up "
+    "blocks of other programs. Do not use it where the onset of full slip decides a result: there "
+    "interpolation is least accurate, with spline_error and linear_error of Q and beta, which are "
+    "absolute. The file of a law (viscoroll tables law) is exact at every V, delta, kappa and mu, "
+    "and has a tenth of the size."
 )
 
 

@@ -149,9 +149,8 @@ def law(
             speeds = material.l0 / material.T_ref * np.logspace(-3.0, 3.0, 61)
             report = material.replace(coupled=False).validity(speeds)
             warn_of_model(
-                "the table has the fast law (coupled=False) in place of "
-                "the solution of pressure and shear together: "
-                + (report.traction if covered else report.bodies).sentence
+                "the table has the fast law (coupled=False), not the coupled solution that contact "
+                "takes: " + (report.traction if covered else report.bodies).sentence
             )
     else:
         table = law_table_of(material, base)
@@ -492,8 +491,8 @@ def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Chec
     if not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
         raise FileError(
             source,
-            "is a grid of a cylinder or a material, and only a grid of a Scene with alpha can be "
-            "checked: check the law of that material in its place (vr.tables.law makes it)",
+            "is a grid of a cylinder or a material, but only a grid of a Scene with alpha can be "
+            "checked: make the law of that material (vr.tables.law), and check this law",
         )
     scene = Scene(
         alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"]

@@ -238,7 +238,7 @@ def _write_header(dataset: Dataset, path: Path) -> None:
         raise ParameterError(
             "path",
             path,
-            "a name in C (letters, digits, _; no digit first; no word of C or C++, nor vr_...) "
+            "a name in C (letters, digits, _; no digit first; no keyword of C or C++, nor vr_...) "
             "with .h, as rubber.h",
         )
     table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))

@@ -112,7 +112,7 @@ def _fault_of(table: Any, path: Any) -> str:
     if is_law(table):
         return (
             "is a law, not a grid: give vr.load_law(file) as material= of a Scene or Cylinder, and "
-            "call the method contact of that"
+            "call the method contact of this roller"
         )
     if str(about.get(KIND)) != GRID:
         return (

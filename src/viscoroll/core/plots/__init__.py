@@ -304,7 +304,7 @@ def field_curves(data: Dataset) -> Figure:
     title = str(data.attrs.get("title", "Contact"))
     band = data.attrs.get(MEASURED) if first == "V" else None
     if band is not None:
-        title += "; dashed: outside the measured band"
+        title += "; dashed: outside the measured frequencies"
     for n, name in enumerate(others[1:]):
         middle = data.sizes[name] // 2
         title += f"{', ' if n else ', at '}{_value_label(data, name, middle)}"
@@ -554,11 +554,11 @@ def draw(data: Dataset) -> Figure:
     for applies, figure in kinds:
         if applies:
             return figure(data)
-    found = ", ".join(f"{size} of {name}" for name, size in data.sizes.items()) or "a single state"
+    found = ", ".join(f"{size} {name}" for name, size in data.sizes.items()) or "a single state"
     raise ParameterError(
         "plot",
         found,
         "a result over an axis",
-        "a plot needs several speeds or creepages and a field such as Q or M, but this result has "
-        f"{found}",
+        "a plot needs several speeds or creepages, and a field such as Q or M; this result has "
+        f"only {found}",
     )

@@ -92,7 +92,7 @@ def series_fit(fit: Any) -> Figure:
     x, *columns = fit.data
     fine = np.geomspace(x[0], x[-1], _POINTS)
     figure, axes = new_figure(
-        f"Prony series of {fit.prony.E.size} modes: misfit {fit.misfit_text(1)}"
+        f"Prony series, {fit.prony.E.size} terms; misfit {fit.misfit_text(1)}"
     )
     for symbol, values, curve, line in zip(fit.symbols, columns, fit._moduli(fine), LINES):
         axes.loglog(
