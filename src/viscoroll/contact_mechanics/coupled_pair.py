@@ -448,7 +448,9 @@ class CoupledRow:
         # d ln(load)/d ln(half length) there
         self._ends, slopes = zip(
             *(
-                coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
+                coupled_states.full_slip(
+                    self._row, mu, sign, coupled_states.new_contact(self.n), length, out
+                )
                 for sign, out in zip((-1.0, 1.0), self._full, strict=True)
             )
         )
@@ -467,7 +469,11 @@ class CoupledRow:
         the other sign appears in the rear half of the contact.
         """
         return 2.0 * coupled_states.touch_creep(
-            self._row, self.mu, *self._ends, _ROUGH_ELEMENTS, *self._guesses
+            self._row,
+            self.mu,
+            *self._ends,
+            coupled_states.new_contact(_ROUGH_ELEMENTS),
+            *self._guesses,
         )
 
     def states(self, creeps: Any, at: Any = None, apart: bool = False) -> CoupledStates:
@@ -495,7 +501,7 @@ class CoupledRow:
             self.mu,
             0.5 * given[inside],
             (given if at is None else at)[inside],
-            self.n,
+            coupled_states.new_contact(self.n),
             *self._guesses,
             apart,
             out,
@@ -534,14 +540,21 @@ class CoupledRow:
         Raises ConvergenceError where no solution was found.
         """
         low, high = self.onsets()
-        out = np.zeros(coupled_states.COLUMNS)
-        sign = 1.0 if creep >= high else -1.0
-        d = 0.5 * creep if low < creep < high else np.inf
-        found = coupled_states.solve_one(self._row, self.mu, d, self.n, *self._guesses, sign, out)
-        self.refuse_unsolved([out[8]], [creep])
+        found = coupled_states.new_contact(self.n)
+        if low < creep < high:
+            out = np.zeros((1, coupled_states.COLUMNS))
+            d = np.array([0.5 * creep])  # kappa delta
+            coupled_states.states_loop(self._row, self.mu, d, d, found, *self._guesses, True, out)
+        else:  # full slip, whose state is known but for its contact
+            side = int(creep >= high)
+            out = self._full[[side]]
+            coupled_states.full_slip(
+                self._row, self.mu, 2.0 * side - 1.0, found, 0.5 * out[0, 0], out[0]
+            )
+        self.refuse_unsolved(out[:, 8], [creep])
         p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
         unit = coupled_states.LOAD / np.trapezoid(p, found.nodes)
-        shift = 0.5 * out[0] * out[1]  # half of lam times epsilon
+        shift = 0.5 * out[0, 0] * out[0, 1]  # half of lam times epsilon
         return CoupledProfile(found.nodes, shift, p=p * unit, q=q * unit)
 
     def refuse_unsolved(self, status: Any, creeps: Any) -> None:

@@ -98,8 +98,7 @@ class Row(NamedTuple):
     layer: float
 
 
-@kernel(allocates=True)
-def new_contact(count):
+def new_contact(count: int) -> Contact:
     """Return the :class:`Contact` of ``count`` elements, of zeros but for equal parameters of the
     nodes; all its inner nodes stick.
     """
@@ -367,7 +366,7 @@ def finish_state(row, contact, out):
 
 
 @kernel(allocates=True)
-def full_slip(row, mu, sign, count, c, out):
+def full_slip(row, mu, sign, contact, c, out):
     """Solve full slip of one sign, and find the creepage at which it begins.
 
     The onset is the largest strain of that sign.  At both edges the strain is extrapolated from
@@ -377,12 +376,12 @@ def full_slip(row, mu, sign, count, c, out):
     row : :class:`Row`, kernels of both bodies at one speed.
     mu : float, coefficient of friction, > 0.
     sign : float, 1.0 or -1.0, sign of the slip.
-    count : int, number of elements, at least 3.
+    contact : :class:`Contact` of at least 3 elements, written.
     c : float, guess of the half length divided by l0, > 0.
     out : (COLUMNS,), the state, written, all columns.
     Returns (kappa times the creepage of the onset; d ln(load)/d ln(c)), floats.
     """
-    contact = new_contact(count)
+    count = contact.at.size
     contact.zone[:] = sign
     # 2.0: the load of an elastic half-space grows as c^2
     _, slope = find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
@@ -432,7 +431,7 @@ def move_edges(place, last, before, count, ahead):
 
 
 @kernel(allocates=True)
-def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
+def states_loop(row, mu, creeps, at, contact, c, slope, apart, out):
     """Solve states between the onsets of full slip, in their order.
 
     The first guess of each state, zones and length, is extrapolated from the two before it.
@@ -441,7 +440,8 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
     mu : float, coefficient of friction, > 0.
     creeps : kappa times the creepage delta of each state, finite, (n,); neighbours should be close.
     at : coordinate of the states in which they change smoothly, strictly ascending, (n,).
-    count : int, number of elements.
+    contact : :class:`Contact`, written: its zones are the first guess, in the end it has nodes,
+        pressure and traction of the last state.
     c, slope : floats, guesses of the first half length, divided by l0, and of d ln(load)/d ln(c),
         > 0.
     apart : bool, whether each state starts from stick and the guess c instead; that its mesh begins
@@ -449,7 +449,6 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
     out : (n, COLUMNS), written, all columns.
     Returns nothing.
     """
-    contact = new_contact(count)
     edges = np.zeros((2, MOST_SPOTS, 3))  # edges of the last two states, in turn
     found = np.zeros(2, np.int64)  # their numbers
     guess = c
@@ -496,7 +495,7 @@ def rear_slip(row, contact, c, slope, mu, d, out):
 
 
 @kernel(allocates=True)
-def touch_creep(row, mu, low, high, count, c, slope):
+def touch_creep(row, mu, low, high, contact, c, slope):
     """Return kappa times the creepage at which the slip in the rear half changes its sign.
 
     Below it the rear half slips with sign -, above it with sign +.  If zones of both signs exist in
@@ -506,11 +505,10 @@ def touch_creep(row, mu, low, high, count, c, slope):
     row : :class:`Row`, kernels of both bodies at one speed.
     mu : float, coefficient of friction, > 0.
     low, high : floats, kappa times the creepages of both onsets of full slip, ``low`` < ``high``.
-    count : int, number of elements.
+    contact : :class:`Contact`, written; its zones are the first guess.
     c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
     Returns a float between ``low`` and ``high``.
     """
-    contact = new_contact(count)
     out = np.zeros(COLUMNS)
     a = low
     b = high
@@ -533,23 +531,3 @@ def touch_creep(row, mu, low, high, count, c, slope):
                 break
             b = high  # Both signs exist, with + at the rear edge.
     return a
-
-
-@kernel(allocates=True)
-def solve_one(row, mu, d, count, c, slope, sign, out):
-    """Solve one state and return its :class:`Contact`, with nodes and tractions.
-
-    row : :class:`Row`, kernels of both bodies at one speed.
-    mu : float, coefficient of friction, > 0.
-    d : float, kappa times the creepage delta; infinite, of any sign: full slip of ``sign``.
-    count : int, number of elements.
-    c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
-    sign : float, 1.0 or -1.0, sign of full slip; not read otherwise.
-    out : (COLUMNS,), the state, written, but for moment and work of the cylinder, columns 5 and 6.
-        Its lam and half length are corrected to the load; the nodes of the contact are not.
-    """
-    contact = new_contact(count)
-    if math.isinf(d):  # the zones of full slip are given (solve_contact)
-        contact.zone[:] = sign
-    find_length(row, contact, c, slope, mu, d, _LOAD_ERROR, out)
-    return contact
