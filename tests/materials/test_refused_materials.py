@@ -285,7 +285,7 @@ REFUSED = [
                 RUBBER_COVER,
                 STEEL,
             ),
-            "material = <2 series": vr.Prony([[1.0], [2.0]], [1.0]),
+            "material = <2 Prony series": vr.Prony([[1.0], [2.0]], [1.0]),
             "base is given: must be left out unless material is a Material": (
                 ROLLER,
                 vr.Material.elastic(200000000000.0, 0.3),
@@ -326,7 +326,7 @@ REFUSED = [
     *each(
         vr.Cover,
         {
-            "other = <2 series | of one material": {"other": MANY},
+            "other = <2 Prony series | of one material": {"other": MANY},
             "series | a Prony series of one material": {"series": MANY},
             "nu has shape (2,) | a number, or a list: one for each thickness": {"nu": [0.3, 0.4]},
             "thickness has shape (2, 1): must be a number, or a list: one for each cover": {
