@@ -254,10 +254,7 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
     with as_section_error(path, name):
         if section.wlf and section.arrhenius:
             raise section_error(
-                path,
-                name,
-                "arrhenius",
-                "wlf and arrhenius are both given: give only one of the two",
+                path, name, "arrhenius", "wlf and arrhenius are both given: give one of the two"
             )
         if shift := section.wlf or section.arrhenius:
             given["shift"] = given.pop(type(shift).__name__.lower())
@@ -398,7 +395,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     forms = {key: given[key] for key in ("prony", "creep") if key in given}
     if len(forms) > 1:
         raise section_error(
-            path, name, "creep", "prony and creep are both given: give only one of the two"
+            path, name, "creep", "prony and creep are both given: give one of the two"
         )
     for key, lists in forms.items():
         columns = {
