@@ -45,7 +45,7 @@ REFUSED = each(
     {
         "method = 'direct': must be 'table' for derivatives": {"method": "direct", "slopes": True},
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
-        "delta and omega are both given: give one of the two": {"omega": 1.1},
+        "delta and omega are both given: give only one of the two": {"omega": 1.1},
         "V is a table: must be one column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
         "thickness/l0 = 0.04: must be at least 0.0625 in a call with several thick": {
             "roller": THIN.replace(material=vr.Cover(1.0, nu=0.0, thickness=[0.04, 0.1]))

@@ -301,7 +301,7 @@ REFUSED = {
     "contact PAPER --V one --delta 0": "--V: 'one' must be a number, LOW:HIGH:COUNT",
     "stress PAPER --V 1,2 --delta 0": "--V: '1,2' must be a number",
     "material fit rubber.toml --column storage": "argument --column: 'storage' must be "
-    "NAME=HEADING, for example storage=Module 1",
+    "NAME=HEADING, for example 'storage=Module 1'",
     "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=HEADING",
     "material fit dma.csv --mode shear": "mode = 'shear': must be 'tension', as read from dma.csv",
     "material fit dma.csv --column temperature=E_loss": "given for temperature, but its unit "
@@ -331,7 +331,7 @@ SHOWN = {
     "material show warm.toml": "unit of time T_ref     0.00295",
     "validity rubber-roller --V 5 --omega 4.99": "steady         yes | small_contact",
     "validity PAPER --V 1.5": "steady         no",
-    "steady PAPER --force 0.12": "load 0: |force + torque| = 0.12",
+    "steady PAPER --force 0.12": "load 0: no steady speed: |force + torque| = 0.12",
 }
 
 

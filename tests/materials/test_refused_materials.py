@@ -351,7 +351,7 @@ REFUSED = [
         lambda made, alpha=None: vr.load_law(netcdf(made()), alpha),
         {
             "left out | given.nc is the law of one material": (law_file, 11.0),
-            "alpha = None: must be a number in [1, 2], as in | --alpha LOW:HIGH": partial(
+            "alpha = None: must be a number in [1, 2], the range of | --alpha LOW:HIGH": partial(
                 vr.tables.law, alpha=(1, 2)
             ),
             "alpha | must be": grid,
