@@ -129,7 +129,7 @@ REFUSED = [
             "given.nc: is damaged or was edited: | attribute material": lambda: of_grid(
                 law_file().assign_attrs(material="not TOML")
             ),
-            "without attribute material; write the file again by vr.tables.save": lambda: [
+            "attribute 'material' is missing; write the file again by vr.tables.save": lambda: [
                 netcdf(law_file(), without="material"),
                 of_materials(OF_LAW),
             ],

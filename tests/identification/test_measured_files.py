@@ -57,7 +57,7 @@ def test_a_factor_in_a_heading_is_no_unit(heading):
     """Which side it multiplies cannot be told; the advice, followed, gives the unit."""
     text = f"{heading};M [N m/m]\n72;0.2\n720;0.3\n"
     more = f'columns = {{ V = "{heading}" }}\n'
-    words = "V is in ", "units = { V = 'UNIT' }"
+    words = "V has the unit ", "units = { V = 'UNIT' }"
     refused(partial(data, text, more=more), *words, error=vr.FileError)
     found = data(text, more=more + 'units = { V = "mm/s" }\n')
     if not heading.startswith("log"):
@@ -94,7 +94,7 @@ ASKED = each(
             "t [s],Drehzahl [1/s]\n0,2\n0,2",
             "t [s],rpm\n0,2\n0,2",
         ],
-        "may both be V: write one": "time [s],velocity [m/s],speed [km/h]\n0,2,3\n0,2,3",
+        "may both be V: name one": "time [s],velocity [m/s],speed [km/h]\n0,2,3\n0,2,3",
         "no column V or omega or x, only 'u [m/s]': if one of these is V": (
             "t [s],u [m/s]\n0,2\n0,2"
         ),

@@ -142,7 +142,7 @@ def test_other_folders_are_refused(tmp_path, whole):
     thesis.mkdir()
     (thesis / "chapter.tex").write_text("dear")
     for call, words in (
-        (partial(run_ensemble, run, whole), "another run file: give another folder"),
+        (partial(run_ensemble, run, whole), "another or earlier run file: give"),
         (
             partial(run_ensemble, run, thesis),
             "is no results store (it contains chapter.tex): give another folder",

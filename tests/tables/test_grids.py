@@ -216,11 +216,16 @@ def test_save_load_identity(table, tmp_path):
 FILL = 9.969209968386869e36
 #: field, its nodes, what they become, words of the refusal
 WRONG = [
-    ("Q", np.s_[7, 5], lambda Q: FILL, "68386869e+36 at V[7], delta[5]: must be another number"),
-    ("M", np.s_[3], lambda M: -M, "at V[3]: must be in [0, "),
-    ("M", np.s_[1], lambda M: 1e10, "at V[1]: must be in [0, "),
-    ("Q", np.s_[4], lambda Q: -Q, "V[4], delta[0]: must be of the same sign as delta"),
-    ("Q", np.s_[6, 32], lambda Q: 1.001 * Q, "V[6], delta[32]: must be at most "),
+    (
+        "Q",
+        np.s_[7, 5],
+        lambda Q: FILL,
+        "68386869e+36 at index 7 of V, 5 of delta: must be another number",
+    ),
+    ("M", np.s_[3], lambda M: -M, "at index 3 of V: must be in [0, "),
+    ("M", np.s_[1], lambda M: 1e10, "at index 1 of V: must be in [0, "),
+    ("Q", np.s_[4], lambda Q: -Q, "index 4 of V, 0 of delta: must be of the same sign"),
+    ("Q", np.s_[6, 32], lambda Q: 1.001 * Q, "index 6 of V, 32 of delta: must be at most "),
 ]
 
 
@@ -249,10 +254,10 @@ def test_declared_invalid_values_are_refused_and_six_digits_are_read(tmp_path):
     for limits in ({"valid_min": 1.0, "valid_max": 2.0}, {"valid_range": [1.0, 2.0]}):
         bounded = other.assign(M=other.M.assign_attrs(limits))
         bounded.to_netcdf(path, engine="h5netcdf")
-        refused(partial(vr.load_law, path), "V[0]: must be in [1, 2], beyond", error=vr.FileError)
+        refused(partial(vr.load_law, path), "index 0 of V: must be in [1, 2]", error=vr.FileError)
     other.Q[1, 2] = np.nan
     other.to_netcdf(path, engine="h5netcdf", encoding={"Q": {"_FillValue": -7.5}})
-    refused(partial(vr.load_law, path), "Q = nan at V[1], delta[2]", error=vr.FileError)
+    refused(partial(vr.load_law, path), "Q = nan at index 1 of V, 2 of delta", error=vr.FileError)
 
 
 # --- formats of other programs ---

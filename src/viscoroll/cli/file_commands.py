@@ -2,6 +2,8 @@
 ``identify``), of laws and grids, and FMUs (``viscoroll tables``, ``export`` and ``fmu``).
 """
 
+from __future__ import annotations
+
 import json
 import sys
 import warnings

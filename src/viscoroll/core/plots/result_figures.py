@@ -57,7 +57,7 @@ def master_curve(material: Any) -> Figure:
     title = material.name or "Material"
     band = inverse = None  # lowest and highest frequency, and the inverse of these
     if record := material.measured:
-        title += "; dashed: outside the measured band"
+        title += "; dashed: outside the measured frequencies"
         band = record.low, record.high
         inverse = 1.0 / record.high, 1.0 / record.low
     figure, (left, right) = new_figure(title, 1, 2, 3.4)
