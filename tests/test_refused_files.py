@@ -188,7 +188,7 @@ REFUSED = [
             ),
             "given = 'both': must be relaxation or creep": SOFT_DATA.assign_attrs(given="both"),
             "has a wrong value (nu = 0.7: must be in (-1, 0.5])": SOFT_DATA.assign(nu=0.7),
-            "has the schema 'other', but must have 'viscoroll material 1'": SOFT_DATA.assign_attrs(
+            "schema is 'other', but must be 'viscoroll material 1'": SOFT_DATA.assign_attrs(
                 schema="other"
             ),
         },

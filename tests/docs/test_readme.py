@@ -24,7 +24,10 @@ def test_readme_block_runs(capsys):
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
     assert "slides for 0.04 s, then rolls to 2.8 m" in printed
-    assert "the error of V is below 1 % down to 0.1 m/s, below 10 % down to 0.028 m/s" in printed
+    assert (
+        "the error of its computed V is below 1 % down to 0.1 m/s, below 10 % down to 0.028 m/s"
+        in printed
+    )
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -268,18 +268,19 @@ def _describe_free(free: FreeRolling) -> str:
     value = free.unsteadiness
     most = free.reach(STEADY_LIMIT)
     whole = free.distance()
-    text = f"unsteadiness (relative error of V) {value:.2g}, up to {STEADY_LIMIT} is allowed: "
+    text = f"unsteadiness (relative error of a computed V) {value:.2g}, "
+    text += f"up to {STEADY_LIMIT} is allowed: "
     if value > STEADY_LIMIT:
         return text + (
             "too slow for the quasi-steady assumption of a motion (contact states and steady "
-            "rolling are valid, its stability is not); the error of V is below 10 % above "
-            f"{most.speed:.2g}{speed}"
+            "rolling are valid, its stability is not); the error of a computed V is below 10 % "
+            f"above {most.speed:.2g}{speed}"
         )
     if not np.isfinite(whole):
         return text + "an elastic cylinder never stops"
     fine = free.reach(0.1 * STEADY_LIMIT)
     start = free.start()
-    text += f"the coasting distance is {whole:.4g}{length}; the error of V is below "
+    text += f"left to coast it rolls {whole:.4g}{length}; the error of its computed V is below "
     if fine.time:  # 0 where the error is above 1 % at the start already
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % until rest"
     if fine.speed:
@@ -307,8 +308,8 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     Returns a str without a full stop.
     """
     text = (
-        f"unsteadiness (relative error of V) up to {most:.2g}, where {STEADY_LIMIT} is allowed: "
-        "the error of V is below 10 % "
+        f"unsteadiness (relative error of the computed V) up to {most:.2g}, where {STEADY_LIMIT} "
+        "is allowed: the error is below 10 % "
     )
     if most <= STEADY_LIMIT:
         return text + "throughout"
@@ -372,11 +373,11 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     holds = np.all([half / h <= limit for limit, h in layers], axis=0)
     theta = half / cover.thinnest
     sentence = (
-        f"the thickness of the layer is {np.min(cover.thinnest):.3g} times the contact length at "
-        f"rest; half the contact length is up to {largest(theta):.2g} times the thickness.  Up to "
-        f"{min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
-        "coupled=False, whose law has stick in front and slip behind; the coupled solution, used "
-        "otherwise for states with traction, has no such limit"
+        f"half the contact length is up to {largest(theta):.2g} times the thickness of the layer, "
+        f"which is {np.min(cover.thinnest):.3g} times the contact length at rest of half-spaces in "
+        f"its place.  Up to {min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
+        "coupled=False, whose law has stick in front and slip behind; without coupled=False "
+        "pressure and shear are solved together, which has no such limit"
     )
     return Assumption(holds | scene.tabulated, theta, sentence)
 

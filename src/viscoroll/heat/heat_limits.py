@@ -552,8 +552,8 @@ def warming(
         if not found.success:
             raise described_error(
                 "V",
-                f"makes the temperature rise without limit from t = {span[0]:g} to {span[1]:g} s",
-                "lower; or lower the load, or end t before the rise",
+                f"makes the temperature rise without limit after t = {[span[0], *found.t][-1]:g} s",
+                "lower; or lower the load, or end t earlier",
             )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])

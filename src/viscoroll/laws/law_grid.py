@@ -236,11 +236,11 @@ def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGr
         refuse_filled(variable, path)
         if name in ("V", "delta") and not (variable.size > 1 and increases(variable.values)):
             raise _no_law(path, f"{name} is not a list of two or more increasing numbers")
-    with _told_of(path):
+    with _told_of(path, table):
         table = _in_si(table)
         check_nodes(table, path)
     table = _at_alpha(table, path, alpha)
-    with _told_of(path):
+    with _told_of(path, table):
         return _law_of(table)
 
 
@@ -250,23 +250,25 @@ def _no_law(path: Any, reason: Any) -> FileError:
 
 
 @contextlib.contextmanager
-def _told_of(path: Any) -> Iterator[None]:
+def _told_of(path: Any, table: Dataset) -> Iterator[None]:
     """Raise KeyError, ValueError and TypeError of the body of the ``with`` as FileError; a context
     manager.
 
     They come of a missing variable, of values that scipy refuses and of attributes; the text of a
     ParameterError is quoted.
     path: path of the file, for the error.
+    table: the grid, whose variables the error states.
     """
     try:
         yield
     except ParameterError as error:
         raise _no_law(path, error) from error
     except (KeyError, ValueError, TypeError) as error:
+        found = ", ".join(
+            f"{name}({', '.join(map(str, each.dims))})" for name, each in table.variables.items()
+        )
         allowed = "V(V), delta(delta), Q(V, delta) and M(V) or M(V, delta), perhaps over alpha too"
-        raise FileError(
-            path, f"is not a grid of a law: must have {allowed}; a valid_range must be two numbers"
-        ) from error
+        raise _no_law(path, f"it has {found}: must have {allowed}") from error
 
 
 def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> None:
@@ -302,13 +304,19 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
     _refuse_nodes(variable, filled, path, "another number, as this one stands for a missing value")
     # limits beyond which a file declares values as missing (CF conventions 1.11, section 2.5.1)
-    with _told_of(path):
-        low, high = variable.attrs.get("valid_range", (-np.inf, np.inf))
-        limits = (variable.attrs.get("valid_min", low), variable.attrs.get("valid_max", high))
+    about = variable.attrs
+    try:
+        low, high = about.get("valid_range", (-np.inf, np.inf))
+        limits = (about.get("valid_min", low), about.get("valid_max", high))
         packed = np.array([np.asarray(limit, float).item() for limit in limits])
         factor = variable.encoding.get("scale_factor", 1.0)
         # limits of packed numbers are packed too, and a negative factor exchanges them
         low, high = np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
+    except (TypeError, ValueError) as error:
+        allowed = "two numbers, and valid_min and valid_max one each"
+        raise _no_law(
+            path, f"the attribute valid_range of {variable.name} must be {allowed}"
+        ) from error
     margin = _ROUNDING * np.abs((low, high))
     invalid = (values < low - margin[0]) | (values > high + margin[1])
     valid = f"in [{low:g}, {high:g}], beyond which the file declares values as missing"

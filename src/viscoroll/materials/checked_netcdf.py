@@ -275,7 +275,8 @@ def check_law(content: Content, path: Any) -> None:
     if kind not in KINDS:
         raise FileError(
             path,
-            "is neither a law (of `viscoroll tables law`) nor a grid (of `viscoroll tables build`)",
+            "is neither a law (of `viscoroll tables law`) nor a grid (of `viscoroll tables build`, "
+            "or of another program with the variables V, delta, Q and M)",
         )
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
@@ -425,9 +426,11 @@ def load_material(path: FilePath, make: Any) -> Any:
             "is a grid or a result, not a material: give a file that Material.to_netcdf wrote",
         )
     if about.get("schema") != _SCHEMA:
+        found = f"{about['schema']!r:.40}" if "schema" in about else "missing"
         raise FileError(
             path,
-            f"has the schema {about.get('schema')!r:.40}, but must have {_SCHEMA!r}; {_REWRITE}",
+            f"is no material of this version of viscoroll: its attribute schema is {found}, but "
+            f"must be {_SCHEMA!r}; {_REWRITE}",
         )
     if seal_matches(pathlib.Path(path).read_bytes()) is None:
         raise FileError(

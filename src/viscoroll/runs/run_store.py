@@ -125,7 +125,9 @@ def roll_inputs(
     for name in run.inputs.uncertain:
         if np.shape(values[name]) not in ((), (1,), (count,)):
             raise shape_error(
-                name, np.shape(values[name]), f"a number, or {count} numbers, one for each motion"
+                name,
+                np.shape(values[name]),
+                f"a number, or count = {count} numbers, one for each motion",
             )
     content = run.inputs.filled(values)
     settings = run.settings

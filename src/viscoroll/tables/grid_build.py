@@ -429,7 +429,8 @@ def build(
         "in SI units, per m of length" if si else "dimensionless"
     )
     grid = ", ".join(
-        f"{name} {axis.size} in [{axis[0]:g}, {axis[-1]:g}]" for name, axis in axes.items()
+        f"{axis.size} values of {name} in [{axis[0]:g}, {axis[-1]:g}]"
+        for name, axis in axes.items()
     )
     table = xr.Dataset(
         data, coordinates, global_attributes(title, grid, command) | {"method": method}

@@ -156,7 +156,7 @@ def _modelica_header(table: Dataset) -> list[str]:
     Raises KeyError for a grid without the attributes title and grid, or without units of V, Q and
     M.
     """
-    units = {name: table[name].attrs["units"] for name in ("V", "Q", "M")}
+    units = {name: table[name].attrs["units"] for name in ("V", "delta", "Q", "M")}
     stated = ", ".join(
         f"{name}: {'dimensionless' if unit == '1' else unit}" for name, unit in units.items()
     )
@@ -170,7 +170,7 @@ def _modelica_header(table: Dataset) -> list[str]:
         PAPER,
         *(f"{name} = {table.attrs[name]!r}" for name in _PARAMETERS if name in table.attrs),
         *str(table.attrs.get("material", "")).splitlines(),
-        f"{table.attrs['grid']}; {stated}",
+        f"Grid of {table.attrs['grid']}; units: {stated}",
         "Q: CombiTable2D (CombiTable2Ds from Modelica 4.0 on), u1 = V, u2 = delta",
         "M: as Q"
         if "delta" in table["M"].dims

@@ -129,7 +129,10 @@ def _fault_of(table: Any, path: Any) -> str:
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
-            return f"is incomplete, as variable {name!r} is missing; {_REBUILD}"
+            return (
+                f"is incomplete, as variable {name!r} is missing: keep all variables of the grid, "
+                "or make it again by vr.tables.build or `viscoroll tables build`"
+            )
         values = table[name].values
         dims = table[name].dims
         own = (name,) if name in axes else tuple(dim for dim in axes if dim in dims)
