@@ -288,7 +288,7 @@ def test_modelica(table, tmp_path):
     tables.export(table, tmp_path / "t.txt")
     text = (tmp_path / "t.txt").read_text()
     assert text.startswith("#1\n")
-    assert f"; V: {table.V.attrs['units']}, Q: " in text
+    assert f"; units: V: {table.V.attrs['units']}, delta: dimensionless, " in text
     for field in ("Q", "M"):
         exact = np.column_stack([V, table[field].values])
         if "delta" in table[field].dims:
