@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core import CYCLES, TURNS, Floats, ParameterError, described_error, suggestion, warn_of_model
+from ..core import CYCLES, TURNS, Floats, ParameterError, suggestion, warn_of_model
 from ..materials import ABSOLUTE_ZERO
 from .text_cells import DATA, MULTIPLIED, NO_UNIT, Numbers, Reading, conversion, readings
 from .text_table import Table, find_column, missing_column
@@ -187,10 +187,10 @@ def columns_of(
     owners = {}
     for name, heading in named.items():
         if (place := find_column(table, heading)) is None:
-            raise described_error(
-                "columns",
-                f"has {heading!r:.60}, which is no heading of the file",
-                f"one of the headings {', '.join(map(repr, table.headings))}"
+            raise ParameterError(
+                f"columns[{name!r}]",
+                f"{heading!r:.60}",
+                f"a heading of the file, one of {', '.join(map(repr, table.headings))}"
                 f"{suggestion(str(heading), table.headings)}",
             )
         owners[place] = name
@@ -229,8 +229,8 @@ def columns_of(
             )
         elif index in owners:
             raise table.error(
-                f"column {heading!r} was given for {owners[index]}, but {faults[0]}; if another "
-                "column is meant, give that heading"
+                f"column {heading!r} is to be read as {owners[index]!r}, but {faults[0]}; if "
+                "another column is meant, name it by columns= (in a shell: --column)"
             )
         else:
             others[heading or f"column {index}"] = faults[0] if faults else ""
@@ -299,11 +299,12 @@ def _contradiction(meaning: Reading, overruling: ByQuantity) -> str:
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
-        return f"its unit {unit!r} is not a unit of {name}: {unit_advice(name)}"
+        return f"its unit {unit!r} is unknown or does not fit {name!r}: {unit_advice(name)}"
     if "angular" in name and unit.lower().endswith(("hz", "cps")):
         return (
-            f"an angular frequency is not in {unit}: write {name.replace('angular ', '')!r} in the "
-            f"heading, or {unit_advice(name)}"
+            f"an angular frequency cannot be in {unit}: if the numbers are in {unit}, write "
+            f"{name.replace('angular ', '')!r} in the heading (and in columns=, if the column is "
+            f"named there); if they are in rad/s, {unit_advice(name)}"
         )
     return ""
 
@@ -333,7 +334,7 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     if not column.stated and (not unit or in_doubt.get(name)):
         raise table.error(
             f"column {column.heading!r} has no unit, and its largest value {most:g} does not "
-            f"show which one is meant: {unit_advice(name)}"
+            f"show which unit is meant: {unit_advice(name)}"
         )
     if column.log:
         values = column.log**values
@@ -347,12 +348,14 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     if name == "temperature":
         table.require(
             (values > ABSOLUTE_ZERO) & (values < math.inf),
-            f"the temperature must be above {ABSOLUTE_ZERO} °C: correct or remove this line",
+            f"the temperature, read in {unit}, must be above {ABSOLUTE_ZERO} °C: correct or remove "
+            "this line, or correct the unit",
         )
     if name == "phase angle":
         table.require(
             values < 0.5 * math.pi,
-            "the phase angle must be below 90 degrees: correct or remove this line",
+            f"the phase angle, read in {unit}, must be below 90 degrees: correct or remove this "
+            "line, or correct the unit",
         )
         # the derivative of the tangent is 1/cos^2
         return Numbers(np.tan(values), half / np.cos(values) ** 2)
@@ -436,8 +439,10 @@ def conversion_of_column(
     found = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
     turns = wanted == "rad s-1" and not CYCLES.search(unit)
     if turns and any(each.name == "rotational speed" for each in meanings(column)):
-        given = "(none)" if unit in NO_UNIT else unit
-        raise ParameterError("unit", given + TURNS, "one of these units, given for the column")
+        given = "(not stated)" if unit in NO_UNIT else unit
+        raise ParameterError(
+            "unit", given + TURNS, f"one of these units, stated for the column {column!r}"
+        )
     if unit in NO_UNIT and wanted != "1":
         warn_of_model(f"{path}: column {column!r} has no unit; {wanted} is assumed: {advice}")
     return found

@@ -138,9 +138,12 @@ def read_relaxation(
     if not {"time", *pair} <= alike.keys():
         raise source.missing(
             "relaxation",
-            "no column was found for the relaxation modulus, nor two for stress and strain"
-            if "time" in alike
-            else "no column was found for time",
+            (
+                "no column was found for the relaxation modulus, nor two for stress and strain"
+                if "time" in alike
+                else "no column was found for time"
+            )
+            + _understood(found),
         )
     table.refuse_several()
     used = [name for name in ("time", *pair, "temperature") if name in alike]
@@ -159,8 +162,8 @@ def read_relaxation(
         source.refuse_unread_temperatures()
     elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise table.error(
-            f"was measured at {temperature.min():g} to {temperature.max():g} °C: keep the lines of "
-            "one temperature"
+            f"has lines at {temperature.min():g} to {temperature.max():g} °C: keep only those of "
+            f"one temperature (within {SAME_TEMPERATURE:g} K)"
         )
     taken = [alike[name][0] for name in used]
     warn_of_assumed_units(table, taken, relaxation)
@@ -346,13 +349,19 @@ def read_dma(
     # a single row may be one of a sweep that the user cut
     if omega.size > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
         raise table.error(
-            f"all {omega.size} lines have the same frequency, {omega[0]:.4g} rad/s: give a file "
-            "with several frequencies (a frequency sweep)"
+            f"all {omega.size} lines have the same frequency, {omega[0]:.4g} rad/s "
+            f"({omega[0] / (2.0 * np.pi):.4g} Hz): give a file with several frequencies (a "
+            "frequency sweep)"
         )
     if temperature is None and len(table.starts) > 1:
         raise table.error(
-            f"has {len(table.starts)} tables without a column of temperature: keep one of them, "
-            "or write a line with its temperature above each, as 'Temperature 20 °C'"
+            f"has {len(table.starts)} tables "
+            + (
+                "of reduced frequencies: keep one of them"
+                if reduced
+                else "without a column of temperature: keep one of them, or write a line with its "
+                "temperature above each, as 'Temperature 20 °C'"
+            )
         )
     record = DynamicModuli(
         omega=omega,
@@ -392,13 +401,13 @@ def _choose_columns(source: Understood) -> tuple[str, tuple[str, str], dict[str,
     quantities = {column.quantity for column in found}
     problem = (
         "no column was found for frequency"
-        + " (temperature sweeps cannot be used: measure a frequency sweep)"
+        + " (if this is a temperature sweep, it cannot be used: measure a frequency sweep)"
         * ("temperature" in quantities)
     )
     if quantities & {"frequency", "reduced frequency"}:
         problem = (
-            "at least two columns are needed of storage, loss, tan delta and modulus (the "
-            "magnitude), all in tension or all in shear, but fewer were found"
+            "two columns of storage, loss, tan delta and modulus (the magnitude) are needed, both "
+            "of tension or both of shear, both moduli or both compliances"
         )
         # without compliances first, then without moduli
         for mode, excluded in itertools.product(modes or [""], ("1/Pa", "Pa")):
@@ -415,4 +424,14 @@ def _choose_columns(source: Understood) -> tuple[str, tuple[str, str], dict[str,
                 if columns.keys() >= {*pair}:
                     others |= unused
                     return mode, pair, columns
-    raise source.missing("dma", problem)
+    raise source.missing("dma", problem + _understood(found))
+
+
+def _understood(found: list[Column]) -> str:
+    """Return the columns of known quantities in words that follow a message; "" where there are
+    none.
+    """
+    known = (
+        f"{each.heading!r} as {each.name}{f' in {each.mode}' * bool(each.mode)}" for each in found
+    )
+    return f"; understood were {', '.join(known)}" * bool(found)

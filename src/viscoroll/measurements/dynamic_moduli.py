@@ -197,8 +197,15 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str 
         for name, given in zip(names, columns, strict=True)
     ]
     for name, column in zip(names, values):
-        if column.ndim != 1 or column.shape != values[0].shape:
-            raise shape_error(name, column.shape, "a list of numbers, as long as the other lists")
+        if column.ndim != 1:
+            advice = "; curves at several temperatures need temperature=" * (kind is Curve)
+            raise shape_error(name, column.shape, f"a list of numbers{advice}")
+        if column.shape != values[0].shape:
+            raise described_error(
+                name,
+                f"has {column.size} numbers",
+                f"as long as {names[0]}, which has {values[0].size}",
+            )
     if values[0].size < fewest:
         raise described_error(
             names[0],
@@ -545,13 +552,14 @@ class DynamicModuli(ModuliRecord):
         Warns with ModelWarning where the record has temperatures that span more than 1 K, or moduli
         of shear, which these arrays do not state.
         """
-        lost = ["the temperatures"] * (not self.isothermal) + [
-            "the statement that they are of shear"
-        ] * (self.mode == "shear")
+        lost = ["the temperatures"] * (not self.isothermal) + ["that the moduli are of shear"] * (
+            self.mode == "shear"
+        )
         if lost:
             warn_of_model(
-                f"{self.source or 'record'}: omega, storage and loss alone lack "
-                f"{' and '.join(lost)}: give the whole record instead, as fit_prony(record)"
+                f"{self.source or 'record'}: the arrays omega, storage and loss do not tell "
+                f"{' and '.join(lost)}: give the whole record in their place, as "
+                "fit_prony(record)"
             )
         return super().__iter__()
 

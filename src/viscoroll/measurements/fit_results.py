@@ -145,7 +145,10 @@ class SeriesFit(Result):
         limit = f"{MISFIT_LIMIT:.0%}" if self.reached else f"the target of {self.target:.2%}"
         if self.reached and self.largest_misfit <= MISFIT_LIMIT:
             return ""
-        return f"the misfit of {self.largest_misfit:.2%} is above {limit}"
+        return (
+            f"the misfit of {self.largest_misfit:.2%} (rms error of the fitted moduli) is above "
+            f"{limit}"
+        )
 
     @property
     def alpha(self) -> float:
@@ -246,7 +249,8 @@ class SeriesFit(Result):
         """
         if self._fault:
             warn_of_model(
-                f"{self._fault}: fit.plot() shows the errors, the how-to on DMA data their causes"
+                f"{self._fault}: plot() of the fit shows fit and data, and the page 'From DMA data "
+                "to rolling resistance' of the documentation lists causes"
             )
         E = self.E
         measured = self.measured
@@ -311,7 +315,9 @@ class SeriesFit(Result):
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
             raise described_error(
-                "cylinder", "has other materials", "a Cylinder with material=fit.material(nu=...)"
+                "cylinder",
+                "has no material of this fit",
+                "a Cylinder with material=fit.material(nu=...)",
             )
         speed = check_array("V", V, unit="m s-1")
         lam = contact(
@@ -470,7 +476,9 @@ class Fit(SeriesFit):
         """
         if self.shifts is None:
             raise described_error(
-                "temperature", "was not given to the fit", "given, one for each curve"
+                "temperature",
+                "was not given to fit_prony, so that there are no shift factors",
+                "given to it, one for each curve",
             )
         return self.shifts.wlf()
 

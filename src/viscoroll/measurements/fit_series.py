@@ -35,6 +35,7 @@ from ..materials import (
 from .dma_reader import RelaxationModulus
 from .dynamic_moduli import (
     SAME_TEMPERATURE,
+    UNITS,
     Curve,
     DynamicModuli,
     Relaxation,
@@ -186,21 +187,7 @@ def fit_prony(
     if isinstance(omega, DynamicModuli):
         record = omega
         strain = record.mean_strain
-        for name, given in (("storage", storage), ("loss", loss)):
-            if given is not None:
-                raise described_error(
-                    name,
-                    "is given",
-                    "left out, since the result of read_dma contains it; give a number of terms "
-                    "by name, as modes=5",
-                )
-        if mode not in (None, record.mode):
-            raise ParameterError(
-                "mode",
-                repr(mode),
-                f"{record.mode!r}, as read from {record.source or 'the data'}, or left out "
-                "(headings E' and E'' mean tension, G' and G'' shear)",
-            )
+        _refuse_beside(record, "read_dma", mode, storage=storage, loss=loss)
         omega = record.omega
         storage = record.storage
         loss = record.loss
@@ -209,9 +196,10 @@ def fit_prony(
         source = source or record.source
     elif storage is None or loss is None:
         raise described_error(
-            "storage or loss",
+            "storage" if storage is None else "loss",
             "is not given",
-            "given beside omega; or give only the result of read_dma",
+            "given, as fit_prony(omega, storage, loss); or give the result of read_dma alone, as "
+            "fit_prony(vr.read_dma('dma.csv'))",
         )
     check_choice("on", on, "both", "storage")
     if not (vertical_shift in (None, "entropic") or callable(vertical_shift)):
@@ -318,13 +306,7 @@ def fit_relaxation(
     (0.5, 100.0)
     """
     if isinstance(t, RelaxationModulus):
-        if relaxation is not None or mode not in (None, t.mode):
-            raise described_error(
-                "relaxation or mode",
-                "is given",
-                "left out, since the result of read_relaxation contains both (headings: E(t) for "
-                "tension, G(t) for shear); give a number of terms by name, as modes=5",
-            )
+        _refuse_beside(t, "read_relaxation", mode, relaxation=relaxation)
         mode = _mode(t.mode)
         source = source or t.source
         temperature = t.temperature if temperature is None else temperature
@@ -341,7 +323,7 @@ def fit_relaxation(
     if last > _RISES * first:
         raise described_error(
             "relaxation",
-            f"rises with time from {first:g} to {last:g}",
+            f"rises from {first:g} at the first time to {last:g} at the last",
             "a relaxation modulus, which falls with time (a creep compliance rises)",
         )
     _, fields, errors = _fit_series(curve, modes, misfit)
@@ -353,6 +335,29 @@ def fit_relaxation(
         source=source,
         temperature=temperature,
     )
+
+
+def _refuse_beside(record: Any, reader: str, mode: Any, **columns: Any) -> None:
+    """Raise ParameterError for arguments that contradict or repeat a record given with them.
+
+    record : result of ``reader``, :class:`DynamicModuli` or :class:`RelaxationModulus`.
+    mode, columns : arguments of the fit, None where they are not given.
+    """
+    for name, given in columns.items():
+        if given is not None:
+            raise described_error(
+                name,
+                f"is given beside the result of {reader}",
+                "left out, since that result contains it; give a number of terms by name, as "
+                "modes=5",
+            )
+    if mode not in (None, record.mode):
+        raise ParameterError(
+            "mode",
+            repr(mode),
+            f"{record.mode!r}, as found by the headings of {record.source or 'the data'} or assumed, "
+            "or left out (in Python, to change it: dataclasses.replace(record, mode=...))",
+        )
 
 
 def _mode(mode: Any) -> Mode:
@@ -389,10 +394,11 @@ def _fit_series(
     low, high = curve.band
     data = thinned(curve)
     if high > MOST_SPREAD * low:
+        shifted = ", or correct the shift, if curves were shifted" * isinstance(data, Curve)
         raise described_error(
             data._fields[0],
-            f"extends from {data[0][0]:g} to {data[0][-1]:g}",
-            f"within a factor of {MOST_SPREAD:g}; leave out points at either end",
+            f"extends from {data[0][0]:g} to {data[0][-1]:g} {UNITS[data._fields[0]]}",
+            f"within a factor of {MOST_SPREAD:g}; leave out points at either end{shifted}",
         )
     spectrum, grid, reached = fewest_modes(data, target, modes)
     T_ref = float(spectrum.tau.max(initial=0.0)) or 1.0  # 1 without modes
@@ -483,7 +489,7 @@ def fit_at_strain(
     if len(sets) == 1:
         return fit_prony(sets[0], **options)
     if not isinstance(getattr(cylinder, "material", None), Material):
-        raise described_error("cylinder", "has no Material", "a Cylinder of a Material")
+        raise described_error("cylinder", "has no Material", "a Cylinder with material=...")
     strain = math.exp(np.mean([math.log(each.mean_strain) for each in sets]))
     for _ in range(_FITS):
         # moduli at the strain, the material of them, and the strain of its contact at that speed
@@ -520,7 +526,8 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
         if record.mean_strain is None:
             raise described_error(
                 "records",
-                f"contain one without strains{f' ({record.source})' * bool(record.source)}",
+                "contain one without a strain above 0 at each point"
+                f"{f' ({record.source})' * bool(record.source)}",
                 "of files with a column of strain and its unit; fit_prony(record) needs no strains",
             )
         strains = np.asarray(record.strain)
@@ -530,10 +537,15 @@ def _sets_of(records: Sequence[Any]) -> list[Any]:
         # sorted indices: points stay in the order of the record
         found += [_points(record, np.sort(part)) for part in parts]
     means = [each.mean_strain for each in found]
-    if len({*means}) < max(1, len(means)):
-        given = ", ".join(f"{mean:.4g}" for mean in means) or "(none)"
+    if not means:
+        raise described_error("records", "are empty", "at least one result of vr.read_dma")
+    if len({*means}) < len(means):
+        given = ", ".join(f"{mean:.4g}" for mean in means)
         raise described_error(
-            "records", f"have the strains {given}", "one or more, of different strains"
+            "records",
+            f"have the strains {given}, some of them equal",
+            "of different strains; leave out all but one of each, or write data of one strain at "
+            "several temperatures into one file",
         )
     if len({each.mode for each in found}) > 1:
         raise described_error(

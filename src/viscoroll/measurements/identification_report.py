@@ -17,6 +17,7 @@ from .. import __version__
 from ..core import Dataset, SummaryRow, attributes
 from .master_curve import undetermined_shifts
 from .measurement_records import ROLLING
+from .spectrum import FLOOR
 from .unknowns import Unknown
 
 #: points of full slip in a motion below which the report says that mu rests on few
@@ -75,23 +76,32 @@ def _heading(fit: Any) -> str:
     from scipy import stats
 
     problem = fit._problem
-    head = f"{len(fit.values)} unknown{'s' * (len(fit.values) > 1)}, {problem.y.size} points"
+    head = (
+        f"{len(fit.values)} unknown{'s' * (len(fit.values) > 1)} in SI units, {problem.y.size} "
+        f"point{'s' * (problem.y.size > 1)}"
+    )
     if fit.planned:
-        return f"{head}, planned: expected standard deviations, if the cylinder has the true values"
+        return (
+            f"{head}, planned (not measured): the standard deviations are those to expect if the "
+            "values of the cylinder are true"
+        )
     if estimated := [
         f"{column} {fit.sigma[str(column)][0]:.3g}"
         for column in problem.columns
         if column.estimated
     ]:
-        return f"{head}; standard deviation of the data, estimated: {', '.join(estimated)}"
+        return (
+            f"{head}; standard deviation of the measured values, estimated from the fit: "
+            f"{', '.join(estimated)}"
+        )
     chance = (
-        ""
+        " (outliers count less)" * problem.robust
         if problem.robust or not fit.dof
         else f" (probability that noise gives more: {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
     )
     return (
-        f"{head}; chi2, the sum of (residual/sigma)^2, is {fit.chi2:.1f}, and about {fit.dof} for "
-        f"noise alone{chance}"
+        f"{head}; chi2, the sum of ((predicted - measured)/sigma)^2, is {fit.chi2:.1f}; noise "
+        f"alone gives about {fit.dof}{chance}"
     )
 
 
@@ -108,21 +118,21 @@ def _noise(fit: Any) -> Iterator[str]:
     """
     for name, noise in fit.noise.items():
         rms, lag, allowed, _ = noise
-        size = f"rms {rms:.2f} sigma" + " by their median" * fit._problem.robust
+        size = f"their rms is {rms:.2f} sigma" + ", by their median" * fit._problem.robust
         if noise.repeats != 1.0:
             # allowed is 3/sqrt(points)
             points = 9.0 / allowed**2
             yield (
-                f"neighbouring residuals of {name} correlate by {lag:.2f} ({size}); independent "
-                f"noise gives at most {allowed * 2.0 / 3.0:.2f}.  Plot the residuals.  If they are "
-                "correlated noise, the intervals hold, which are already widened to those of "
-                f"{points / noise.repeats:.0f} points in place of {points:.0f}.  Otherwise "
-                f"{_INADEQUATE}"
+                f"neighbouring residuals (predicted minus measured) of {name} correlate by "
+                f"{lag:.2f} ({size}); independent noise gives at most {allowed * 2.0 / 3.0:.2f}.  "
+                "Plot the residuals.  If they are correlated noise, the intervals hold: they are "
+                f"already widened to those of {points / noise.repeats:.0f} points in place of "
+                f"{points:.0f}.  Otherwise {_INADEQUATE}"
             )
         elif name in fit.misfit:
             yield (
-                f"the residuals of {name} are larger than noise ({size}): sigma is too small, "
-                f"or {_INADEQUATE}"
+                f"the residuals (predicted minus measured) of {name} are larger than noise "
+                f"({size}): sigma is too small, or {_INADEQUATE}"
             )
 
 
@@ -163,8 +173,8 @@ def _limits(fit: Any) -> Iterator[str]:
     for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
         if not {names[i], names[k]} <= loose:
             yield (
-                f"errors of {names[k]} and {names[i]} compensate each other (correlation "
-                f"{fit.correlations[i, k]:+.4f})"
+                f"an error of {names[k]} is nearly compensated by one of {names[i]} (correlation "
+                f"of these errors: {fit.correlations[i, k]:+.4f})"
             )
 
 
@@ -185,15 +195,15 @@ def _products(fit: Any) -> str:
         for by_slopes in (False, True)
     )
     if not found:
-        return "they do not determine a product of their powers either"
+        return "the data determine no product of powers of these either"
     # of those that stand first in the sentence: near is False of the sure ones
     limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
-    verb = "are" if " and " in (sure or near) else "is"
-    text = f"only {sure or near} {verb} determined" + " within the ranges given" * limited
+    text = f"only products of powers are determined: {sure or near}"
+    text += " within the ranges given" * limited
     more = (
-        f"; near these values also {near}, more precisely"
+        f"; near the values found also {near}, more precisely"
         if sure
-        else ", but only near these values"
+        else ", and only near the values found"
     )
     return text + f"{more}{_NEAR}" * bool(near)
 
@@ -257,11 +267,14 @@ def _interval_limits(fit: Any) -> Iterator[str]:
         if found.best.chi2 < fit.chi2 - _BETTER:
             listed = _values_text(problem.values(found.best.u))
             yield (
-                f"a better fit was found, with chi2 {found.best.chi2:.1f} at {listed}: repeat with "
-                "a cylinder of these values, or with a larger starts"
+                f"a better fit was found, with chi2 {found.best.chi2:.1f} at {listed}: repeat "
+                "identify with a cylinder of these values, or with more searches (starts)"
             )
     for i in problem.at_bounds(fit._likelihood.best.u):
-        yield f"the best fit is at an end of the range of {problem.names[i]}: extend it if possible"
+        yield (
+            f"the best fit is at an end of the range given for {problem.names[i]}: extend this "
+            "range if possible"
+        )
     for bound, ends in limited.items():
         yield f"the range given for {bound}, not the data, determines {', '.join(ends)}"
 
@@ -443,7 +456,10 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     """
     prony = fit.prony
     symbol = fit.symbols[0][0]
-    floor = "" if fit.plateau else "; the data do not determine it, and the fit allows no less"
+    floor = (
+        f"; the data do not determine it: this is the least allowed, {FLOOR:.0%} of the lowest "
+        f"{fit.symbols[0]}" * (not fit.plateau)
+    )
     yield symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}"
     if fit.mode == "shear":
         yield (
@@ -460,7 +476,8 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     if fit.points > fit.data[0].size:
         yield (
             "thinned",
-            f"the fit uses the means of {fit.data[0].size} logarithmic bins in place of the points",
+            f"the fit uses the means of the points in {fit.data[0].size} logarithmic bins, not the "
+            "single points",
         )
     target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
     yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
@@ -468,7 +485,7 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         yield (
             "",
             f"{symbol}'' follows from the slope of {symbol}(t); its error is at least ten times "
-            "larger",
+            f"that of {symbol}(t)",
         )
     else:
         yield from _of_dynamic(fit, symbol)
@@ -486,14 +503,15 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
         )
         yield (
             "",
-            f"in the series of least and most M, {symbol} is {low:.3g} to {high:.3g} times that "
-            f"above, alpha {least:.3g} to {most:.3g} times",
+            f"in the series with the least and the most M, {symbol} is {low:.3g} to {high:.3g} "
+            f"times the {symbol} above, and alpha {least:.3g} to {most:.3g} times the alpha above",
         )
     else:
         yield (
             "accuracy",
-            "of the rolling moment M: not known; this needs data with loss at the angular "
-            "frequencies f to 3 f, rad/s, with f = speed/contact length",
+            "of the rolling moment M: not known, as the data show no relaxation or span less than "
+            "a factor of 3; a contact needs data from f to 3 f in rad/s, with f = speed/contact "
+            "length in 1/s",
         )
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside):
@@ -524,7 +542,8 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
     if shifts.distinct > count:
         yield (
             "",
-            f"temperatures at most 0.5 K apart were combined: {shifts.distinct} into {count}",
+            f"temperatures at most 0.5 K apart were combined: {shifts.distinct} temperatures into "
+            f"{count} curves",
         )
     if np.isfinite(shifts.mismatch).any():
         most = np.nanmax(shifts.mismatch)
@@ -544,13 +563,16 @@ def _kramers_kronig(median: float, symbol: str) -> str:
     """
     if np.isnan(median):
         return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
-    text = f"is {median:.2f} times the value from the slope of {symbol}' (Kramers-Kronig, median)"
+    low, high = _CONSISTENT
     if median > _FLAT:
-        text = f"is above 0, but {symbol}' does not rise with the frequency (Kramers-Kronig)"
+        return (
+            f"is above 0, but {symbol}' does not rise with the frequency: the moduli contradict "
+            "each other (Kramers-Kronig)"
+        )
     return (
-        text
-        + ": the moduli contradict each other or rise steeply, or relaxation times are far apart"
-        * (not _CONSISTENT[0] <= median <= _CONSISTENT[1])
+        f"is {median:.2f} times the value from the slope of {symbol}' (Kramers-Kronig, median)"
+        + f", usual are {low} to {high}: the moduli contradict each other or rise steeply, or "
+        "relaxation times are far apart" * (not low <= median <= high)
     )
 
 

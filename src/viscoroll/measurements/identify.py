@@ -148,8 +148,8 @@ def identify(
             "shift",
             shifts,
             Mapping,
-            "a vr.WLF, a vr.Arrhenius or a function of the temperature in degrees Celsius, or "
-            "{'material': ..., 'base': ...} with one for each body",
+            "a vr.WLF, a vr.Arrhenius or a function that returns a_T of a temperature in degrees "
+            "Celsius, or {'material': ..., 'base': ...} with one for each body",
         ),
         ("prior", prior, Mapping, "a dict {name: (value, standard deviation)}"),
     ):
@@ -168,9 +168,10 @@ def identify(
     if changing and cylinder.scene().tabulated:
         raise described_error(
             "coupled",
-            f"is not False, but the coupled solution needs a table for each value of {changing[0]}",
-            "False in the Cylinder (in a file: coupled = false in [cylinder]), for the fast law, "
-            "whose error cylinder.validity(V) states",
+            "is not False, and the coupled solution would need a table for each trial value of "
+            + changing[0],
+            "False in the Cylinder (in a file: coupled = false in [cylinder]); then the fast law "
+            "is used, whose error cylinder.validity(V) states",
         )
     problem = Problem(
         cylinder=cylinder,
@@ -184,9 +185,10 @@ def identify(
     if len(unknowns) > most:
         raise ParameterError(
             "number of unknowns",
-            len(unknowns),
-            f"at most {most}, as the number of points is {problem.points} (the estimate of a sigma "
-            "that is not given takes one): give more points or sigma, or fewer unknowns",
+            f"{len(unknowns)} ({', '.join(each.name for each in unknowns)})",
+            f"at most {most}, the number of values in the records and of priors"
+            f"{', less one as sigma is not given' * (most < problem.points)}: give more points"
+            f"{' or sigma' * (most < problem.points)}, or fewer unknowns",
         )
     return Identification(
         problem,
@@ -208,8 +210,10 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
     found: dict[str, Record] = {}
     for record in data:
         if not isinstance(record, Record):
-            raise ParameterError(
-                "data", describe_value(record), "a list of Resistance, Traction and Coastdown"
+            raise described_error(
+                "data",
+                f"contains {describe_value(record)}",
+                "a list of vr.Resistance, vr.Traction and vr.Coastdown",
             )
         # records of the same kind before that were given no name either
         alike = sum(type(other) is type(record) and not other.name for other in found.values())
@@ -218,7 +222,10 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
             raise ParameterError("name", repr(name), "different for each record: give name=")
         if not record.sigma:
             raise described_error(
-                f"{name}: sigma", "is not given", "given for a record without values (a plan)"
+                f"{name}: sigma",
+                "is not given",
+                f"given for a record without values of {' or '.join(record.QUANTITIES)} (a plan); "
+                "if there are measured values, give these",
             )
         found[name] = record
     if not found:
@@ -228,8 +235,9 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
         raise described_error(
             "data",
             f"has measured values in some records, but none in {', '.join(planned)}",
-            "measured in all records, or in none (a plan).  Give the missing values; or identify "
-            "with the measured records alone, and plan the others with fit.cylinder",
+            "records that all have measured values, or that all have none (plans).  Give the "
+            "missing values; or call identify with the measured records, and then with the others "
+            "and the attribute cylinder of the result",
         )
     return found
 
@@ -533,9 +541,9 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         name = kind.QUANTITIES[0]
         raise FileError(
             path,
-            f"has no column {' or '.join(kind.QUANTITIES)}, only {', '.join(others)}: if one of "
-            f"these is {name}, write columns = {{ {name} = 'HEADING' }} in [[data]]; if nothing "
-            "was measured (a plan), remove these columns",
+            f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}, whose meaning "
+            f"is not known: if this is {name}, for example, write columns = {{ {name} = 'HEADING' "
+            "} in [[data]]; if nothing was measured (a plan), remove the column",
         )
     if others:
         warn_of_model(f"{path.name}: unused columns: {', '.join(others)}")
@@ -545,7 +553,10 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         try:
             found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
-            per = " (per metre of length of the cylinder)" * unit.endswith(" m-1")
+            per = (
+                " (per metre of length of the cylinder: divide numbers for the whole cylinder by "
+                "its length)" * unit.endswith(" m-1")
+            )
             raise described_error(
                 name,
                 f"has the unit {error.value}",
