@@ -479,8 +479,8 @@ def test_fit_at_the_strain_of_the_contact():
     for given, roller, words in (
         ([sets[0], dataclasses.replace(sets[1], mode="shear")], ROLLER, "all of tension or all"),
         ([], ROLLER, "at least one"),
-        ([record(0.01), record(0.01)], ROLLER, "one or more, of different strains"),
-        (sets, vr.presets.RUBBER_ROLLER, "a Cylinder of a Material"),
+        ([record(0.01), record(0.01)], ROLLER, "of different strains; leave out all but one"),
+        (sets, vr.presets.RUBBER_ROLLER, "a Cylinder with material="),
     ):
         refused(partial(vr.fit_at_strain, given, roller, 3.0), words)
 

@@ -49,7 +49,7 @@ def test_the_page_of_measurements_runs(here, capsys):
         assert not session[fit].misfit
     shown = capsys.readouterr().out
     assert "Identification, unknowns: 7, points: 240" in shown
-    assert "planned: expected standard deviations, if the cylinder has the true values" in shown
+    assert "planned (not measured): the standard deviations are those to expect if the" in shown
 
 
 def test_run_file_pages_can_be_followed(here, capsys):

@@ -27,7 +27,7 @@ def test_the_program_reports(here, capsys):
     measurements(here)
     line = ["identify", "data.toml", "--starts", "1", "-o"]
     assert cli.main([*line, "fit.JSON", "--plot", "fit.png"]) == 0
-    assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2, ")
+    assert capsys.readouterr().out.startswith("2 unknowns in SI units, 40 points; chi2, ")
     found = json.loads(Path("fit.JSON").read_text())
     assert found["unknowns"]["T_ref"]["interval"][0] < 1e-3
     assert found["does_not_act"] == []
@@ -95,7 +95,7 @@ ASKED = each(
             "t [s],rpm\n0,2\n0,2",
         ],
         "may both be V: name one": "time [s],velocity [m/s],speed [km/h]\n0,2,3\n0,2,3",
-        "no column V or omega or x, only 'u [m/s]': if one of these is V": (
+        "no column V or omega or x, but 'u [m/s]', whose meaning is not known: if one is V": (
             "t [s],u [m/s]\n0,2\n0,2"
         ),
     },

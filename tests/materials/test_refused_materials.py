@@ -158,7 +158,7 @@ REFUSED = [
                 T0=20.0
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
-            "cylinder has other materials: must be a Cylinder with material=": [
+            "cylinder has no material of this fit: must be a Cylinder with material=": [
                 lambda: vr.fit_prony(*DMA).validity(ROLLER, 1.0),
                 lambda: vr.fit_prony(*DMA).validity(None, 1.0),
             ],
@@ -180,12 +180,14 @@ REFUSED = [
             "standard deviation of prior E is in kPa: must be a number without dimension": {
                 "prior": {"E": (3e6, xr.DataArray(1.0, attrs={"units": "kPa"}))}
             },
-            "number of unknowns = 1: must be at most 0, as the number of points is 1 (the "
-            "estimate of a sigma that is not given takes one)": {"data": vr.Resistance(0.1, 0.1)},
+            "number of unknowns = 1 (E): must be at most 0, the number of values in the records "
+            "and of priors, less one as sigma is not given: give more points or sigma, or": {
+                "data": vr.Resistance(0.1, 0.1)
+            },
             "name = 'a': must be different for each record": {
                 "data": [vr.Resistance(HUMP, sigma=0.1, name="a")] * 2
             },
-            "data has measured values in some records, but none in b: must be measured in all": {
+            "data has measured values in some records, but none in b: must be records that all": {
                 "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
             },
             "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
@@ -302,9 +304,12 @@ REFUSED = [
             "omega | within a factor": ([1e-20, 1.0, 1e20], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]),
             "storage has no plateau at low frequencies (0.0001 at omega = 0.01): must be that "
             "of a solid, which": (DMA[0], DMA[0] ** 2, DMA[0]),
-            "storage is given: must be left out, since the result of read_dma contains it; give "
-            "a number of terms": (vr.DynamicModuli(*DMA), 5),
-            "storage or loss is not given": (DMA[0], DMA[1]),
+            "storage is given beside the result of read_dma: must be left out, since that result "
+            "contains it; give a number of terms": (vr.DynamicModuli(*DMA), 5),
+            "loss is not given: must be given, as fit_prony(omega, storage, loss)": (
+                DMA[0],
+                DMA[1],
+            ),
         },
     ),
     *each(
@@ -315,13 +320,16 @@ REFUSED = [
                 "relaxation": 1.0 + np.exp(-STEP),
                 "temperature": [20.0],
             },
-            "relaxation rises with time from 1.001 to 2: must be a relaxation modulus, which "
-            "falls with time (a creep": 2.0 - np.exp(-STEP),
+            "relaxation rises from 1.001 at the first time to 2 at the last: must be a relaxation "
+            "modulus, which falls with time (a creep": 2.0 - np.exp(-STEP),
         },
     ),
     *each(
         partial(vr.fit_relaxation, vr.RelaxationModulus(STEP, 1.0 / STEP, mode="shear")),
-        {"relaxation or mode is given: must be left out": [STEP, {"mode": "tension"}]},
+        {
+            "relaxation is given beside the result of read_relaxation: must be left out": STEP,
+            "mode = 'tension': must be 'shear', as read from the data": {"mode": "tension"},
+        },
     ),
     *each(
         vr.Cover,

@@ -125,7 +125,7 @@ CASES = {
     ),
     "an angular frequency in Hz": (
         "Angular frequency [Hz];E' [MPa];E'' [MPa]\n<w; S/1e6; L/1e6>\n",
-        "or give the unit of the column, as units=",
+        "if they are in rad/s, give the unit of the column, as units=",
         give(units={"angular frequency": "rad/s"}),
     ),
     "frequencies that contradict, the second": (
@@ -175,7 +175,7 @@ CASES = {
     ),
     "a sweep of temperature": (
         "T [°C];E' [MPa];E'' [MPa]\n<20+n; S/1e6; L/1e6>\n",
-        "temperature sweeps cannot be used",
+        "if this is a temperature sweep, it cannot be used",
         give(columns={"frequency": "T [°C]"}),
         "is not a unit of frequency",
     ),

@@ -63,7 +63,9 @@ REFUSED = each(
         "'Strain' has no unit | units={'strain': '%'}": (
             "Time [s];Stress [MPa];Strain\n1;2;5\n2;1;5\n"
         ),
-        "at 20 to 40 °C: keep the lines of": ("Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n"),
+        "at 20 to 40 °C: keep only those of one temperature (within 1 K)": (
+            "Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n"
+        ),
         "line 4 (1; 1): an earlier line has the same time | differs, make a file for each": (
             "Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n"
         ),

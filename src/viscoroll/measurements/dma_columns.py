@@ -299,7 +299,7 @@ def _contradiction(meaning: Reading, overruling: ByQuantity) -> str:
     try:
         conversion(unit, UNITS[name])
     except ParameterError:
-        return f"its unit {unit!r} is unknown or does not fit {name!r}: {unit_advice(name)}"
+        return f"its unit {unit!r} is not a unit of {name}: {unit_advice(name)}"
     if "angular" in name and unit.lower().endswith(("hz", "cps")):
         return (
             f"an angular frequency cannot be in {unit}: if the numbers are in {unit}, write "

@@ -338,9 +338,8 @@ def fit_relaxation(
 
 
 def _refuse_beside(record: Any, reader: str, mode: Any, **columns: Any) -> None:
-    """Raise ParameterError for arguments that contradict or repeat a record given with them.
+    """Raise ParameterError for arguments that contradict or repeat a record, of ``reader``.
 
-    record : result of ``reader``, :class:`DynamicModuli` or :class:`RelaxationModulus`.
     mode, columns : arguments of the fit, None where they are not given.
     """
     for name, given in columns.items():
@@ -355,8 +354,9 @@ def _refuse_beside(record: Any, reader: str, mode: Any, **columns: Any) -> None:
         raise ParameterError(
             "mode",
             repr(mode),
-            f"{record.mode!r}, as found by the headings of {record.source or 'the data'} or assumed, "
-            "or left out (in Python, to change it: dataclasses.replace(record, mode=...))",
+            f"{record.mode!r}, as read from {record.source or 'the data'} (or assumed, if no "
+            "heading says it), or left out; to change it, in Python: dataclasses.replace(record, "
+            "mode=...)",
         )
 
 

@@ -542,7 +542,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         raise FileError(
             path,
             f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}, whose meaning "
-            f"is not known: if this is {name}, for example, write columns = {{ {name} = 'HEADING' "
+            f"is not known: if one is {name}, for example, write columns = {{ {name} = 'HEADING' "
             "} in [[data]]; if nothing was measured (a plan), remove the column",
         )
     if others:
