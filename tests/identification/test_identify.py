@@ -147,8 +147,9 @@ def test_a_product_that_a_range_limits_is_told():
     )
     assert (
         "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends set by the range given for "
-        "T_ref) are determined within the ranges given" in said
+        "T_ref)" in said
     )
+    assert "only products of powers are determined within the ranges given: E T_ref^0.77" in said
 
 
 # --- what is not a fit of one minimum of good data ---

@@ -198,8 +198,8 @@ def _products(fit: Any) -> str:
         return "the data determine no product of powers of these either"
     # of those that stand first in the sentence: near is False of the sure ones
     limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
-    text = f"only products of powers are determined: {sure or near}"
-    text += " within the ranges given" * limited
+    within = " within the ranges given" * limited
+    text = f"only products of powers are determined{within}: {sure or near}"
     more = (
         f"; near the values found also {near}, more precisely"
         if sure
