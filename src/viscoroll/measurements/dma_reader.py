@@ -283,7 +283,7 @@ def read_dma(
     table, _, others = source
     mode, pair, columns_of_quantity = _choose_columns(source)
     mode, assumed = source.mode(mode)
-    notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1) + assumed
+    notes = [f"{len(table.starts)} tables are joined"] * (len(table.starts) > 1) + assumed
     # read at the end, since a strain that cannot be read is left out, while others are refused
     strains = columns_of_quantity.pop("strain", [])
     numbers = {quantity: source.numbers(alike) for quantity, alike in columns_of_quantity.items()}
@@ -295,7 +295,7 @@ def read_dma(
         if reduced and np.ptp(temperature) > SAME_TEMPERATURE:
             temperature = None
             others[columns_of_quantity.pop("temperature")[0].heading] = (
-                "reduced frequencies belong to one reference temperature"
+                "temperatures of the tests, while reduced frequencies are of one reference"
             )
     elif not reduced:
         source.refuse_unread_temperatures()
@@ -306,6 +306,7 @@ def read_dma(
     storage, loss = storage_and_loss(table, pair, moduli)
     taken = [alike[0] for alike in columns_of_quantity.values()]
     sources = [columns_of_quantity[name][0].name for name in pair]
+    made = f" from {' and '.join(sources)}" * (sources != ["storage", "loss"])
     if UNITS[sources[0]] == "1/Pa":  # the second may be a tan delta
         with np.errstate(all="ignore"):  # what is not finite is refused
             # compliance J' - i J'' and modulus E' + i E'' are inverse
@@ -322,11 +323,11 @@ def read_dma(
         "loss modulus": loss,
     }.items():
         table.require(
-            (values > 0.0) & (values < np.inf), f"the {name} must be > 0 and finite: {advice}"
+            (values > 0.0) & (values < np.inf),
+            f"the {name}{made * ('modulus' in name)} must be > 0 and finite: {advice}",
         )
     warn_of_assumed_units(table, taken, storage)
-    if sources != ["storage", "loss"]:
-        notes.append(f"moduli are from {' and '.join(sources)}")
+    notes += [f"moduli are{made}"] * bool(made)
     notes += [f"{name} agrees with {' and '.join(pair)}" for name in moduli if name not in pair]
     strain = None
     if strains:

@@ -146,7 +146,7 @@ class SeriesFit(Result):
         if self.reached and self.largest_misfit <= MISFIT_LIMIT:
             return ""
         return (
-            f"the misfit of {self.largest_misfit:.2%} (rms error of the fitted moduli) is above "
+            f"the misfit of {self.largest_misfit:.2%} (rms relative error of the moduli) is above "
             f"{limit}"
         )
 

@@ -204,7 +204,7 @@ def fit_prony(
     check_choice("on", on, "both", "storage")
     if not (vertical_shift in (None, "entropic") or callable(vertical_shift)):
         raise ParameterError(
-            "vertical_shift", describe_value(vertical_shift), "'entropic' or a function"
+            "vertical_shift", describe_value(vertical_shift), "'entropic' or a function of T in °C"
         )
     mode = _mode(mode)
     if temperature is None:

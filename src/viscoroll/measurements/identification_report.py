@@ -163,7 +163,7 @@ def _limits(fit: Any) -> Iterator[str]:
     yield from _interval_limits(fit)
     for chi2, values in fit.minima[1:]:
         yield (
-            f"other values fit nearly as well, with a chi2 that is {chi2 - fit.chi2:.1f} higher: "
+            f"other values fit too, with a chi2 that is {chi2 - fit.chi2:.1f} higher: "
             f"{_values_text(values)}"
         )
     yield from _phases(fit)

@@ -168,8 +168,8 @@ def identify(
     if changing and cylinder.scene().tabulated:
         raise described_error(
             "coupled",
-            "is not False, and the coupled solution would need a table for each trial value of "
-            + changing[0],
+            "of the cylinder is not False, and the coupled solution would need a table for each "
+            f"trial value of {changing[0]}",
             "False in the Cylinder (in a file: coupled = false in [cylinder]); then the fast law "
             "is used, whose error cylinder.validity(V) states",
         )
