@@ -203,7 +203,7 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str 
         if column.shape != values[0].shape:
             raise described_error(
                 name,
-                f"has {column.size} numbers",
+                f"has {column.size} number{'s' * (column.size != 1)}",
                 f"as long as {names[0]}, which has {values[0].size}",
             )
     if values[0].size < fewest:
@@ -464,7 +464,7 @@ class ModuliRecord(Result):
         name = self.COLUMNS[0]
         x = getattr(self, name)
         words = [
-            f"{np.size(x)} points",
+            f"{np.size(x)} point{'s' * (np.size(x) > 1)}",
             f"{name} {np.min(x):.4g} to {np.max(x):.4g} {self.AXES[0].split()[-1]}",
             f"{self.mode} ({', '.join(self.symbols)})" if self.symbols else self.mode,
         ]

@@ -126,8 +126,8 @@ def _noise(fit: Any) -> Iterator[str]:
                 f"neighbouring residuals (predicted minus measured) of {name} correlate by "
                 f"{lag:.2f} ({size}); independent noise gives at most {allowed * 2.0 / 3.0:.2f}.  "
                 "Plot the residuals.  If they are correlated noise, the intervals hold: they are "
-                f"already widened to those of {points / noise.repeats:.0f} points in place of "
-                f"{points:.0f}.  Otherwise {_INADEQUATE}"
+                f"already widened as if the number of points were {points / noise.repeats:.0f} in "
+                f"place of {points:.0f}.  Otherwise {_INADEQUATE}"
             )
         elif name in fit.misfit:
             yield (
