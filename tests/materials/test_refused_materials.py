@@ -346,6 +346,8 @@ REFUSED = [
             "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
             "since it resists; reverse its sign": {"V": HUMP, "M": -resistance().M, "sigma": 0.01},
             "F is empty: must be at least one number": {"V": [1.0], "F": []},
+            "resistance: F has shape (3,): must be one value for each point, in the shape (1,) of "
+            "V": {"V": [1.0], "F": [1.0, 2.0, 3.0]},
         },
         sigma=0.1,
     ),

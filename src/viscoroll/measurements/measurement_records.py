@@ -116,7 +116,8 @@ class Record:
                     f"a dict with one each, as {{{': ..., '.join(map(repr, among))}: ...}}",
                 )
             sigma = {among[0]: sigma}
-        check_names(self.label("sigma"), sigma, among, "a quantity of the record")
+        kind = f"a {'measured ' * bool(self.measured)}quantity of the record"
+        check_names(self.label("sigma"), sigma, among, kind)
         sigma = {name: value for name, value in sigma.items() if value is not None}
         for name, value in sigma.items():
             label = f"sigma of {name}"

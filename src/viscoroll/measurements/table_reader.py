@@ -97,8 +97,8 @@ def storage_and_loss(
     if pair[1] == "modulus":  # a difference of squares
         table.require(
             ~np.isnan(storage + loss),
-            f"{pair[0]} modulus is above the magnitude of the complex modulus: correct the line, "
-            "or the unit of one of the two columns",
+            f"{pair[0]} is above the magnitude of the complex modulus or compliance: correct the "
+            "line, or the unit of one of the two columns",
         )
         wanted = "loss" if pair[0] == "storage" else "storage"
         other = exact[wanted]
@@ -107,8 +107,8 @@ def storage_and_loss(
         rounding *= (exact["modulus"] / other) ** 2
         table.require(
             rounding <= _ROUNDED,
-            f"{pair[0]} modulus and magnitude of the complex modulus differ too little, for their "
-            f"number of digits, to give the {wanted} modulus: add a column of tan delta",
+            f"{pair[0]} and the magnitude of the complex modulus or compliance differ too little, "
+            f"for their number of digits, to give {wanted}: add a column of tan delta",
         )
     for name in columns.keys() - set(pair):
         values, half = columns[name]
@@ -388,7 +388,9 @@ def _units(units: Any, test: str) -> tuple[ByQuantity, ByQuantity]:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
             raise described_error(
-                "units", f"has {unit!r} for {name}", f"a unit of the dimension of {UNITS[name]}"
+                "units",
+                f"has {unit!r} for {name}",
+                f"a unit of the dimension of {UNITS[name]}{', as %' * (UNITS[name] == '1')}",
             ) from error
     return (pairs, {}) if by_name else ({}, pairs)
 

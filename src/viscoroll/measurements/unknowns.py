@@ -126,7 +126,7 @@ def unknowns_of(
             starts[f"{name}:{record_name}"] = start
             if span is not None:
                 ranges.setdefault(f"{name}:{record_name}", span)
-    check_names("unknown", ranges, starts, "an input")
+    check_names("unknown", ranges, starts, "an input that can be unknown")
     check_names("prior", priors, ranges, "an unknown")
     return [
         _make_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()
