@@ -385,7 +385,7 @@ REFUSED = [
             "omega has shape (20,): must be one number for each point, of shape (0,), as temp": {
                 "temperature": []
             },
-            "reference = 30.0: must be from 20.0 to 20.0 °C, as temperature, or at most": {
+            "reference = 30.0: must be from 20.0 to 20.0 °C, the range of temperature, or": {
                 "temperature": 20.0,
                 "reference": 30.0,
             },

@@ -323,7 +323,7 @@ def master_curve(
             raise ParameterError(
                 "reference",
                 base,
-                f"from {low} to {high} °C, as temperature, or at most 0.5 K beyond",
+                f"from {low} to {high} °C, the range of temperature, or at most 0.5 K beyond",
             )
         curves = []
         for n, T in enumerate(temperatures):
@@ -450,6 +450,7 @@ class _LogCurve:
 
         curve : :class:`Curve`, storage and loss modulus.
         on : "storage" or "both": the moduli that are kept.
+        place : words for the temperature of the curve, for the error.
         Raises ParameterError for a single frequency.
         """
         from scipy import interpolate

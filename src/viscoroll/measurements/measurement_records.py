@@ -113,7 +113,7 @@ class Record:
                 raise ParameterError(
                     self.label("sigma"),
                     f"{sigma!r:.40}",
-                    f"a dict with one each, as {{{': ..., '.join(map(repr, among))}: ...}}",
+                    f"one per quantity in a dict, as {{{': ..., '.join(map(repr, among))}: ...}}",
                 )
             sigma = {among[0]: sigma}
         kind = f"a {'measured ' * bool(self.measured)}quantity of the record"
