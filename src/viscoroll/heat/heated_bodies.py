@@ -513,8 +513,10 @@ def heat_states(
     if vertical and (covered or (remade and driven is not None)):
         raise described_error(
             "vertical_shift",
-            "of the Material is given for "
-            + ("a cover" if covered else "an elastic body beside, and a force, torque or slope"),
+            "of the Material is given "
+            + (
+                "for a cover" if covered else "beside an elastic body, under force, torque or slope"
+            ),
             "left out there, as the contact law would differ at each temperature",
         )
     several = scene.material_array

@@ -480,7 +480,9 @@ class Coastdown(Record):
             )
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
-            raise ParameterError(self.label("t0"), self.t0, "a number, or a range (low, high)")
+            raise ParameterError(
+                self.label("t0"), self.t0, "a number, or a range (low, high), in s"
+            )
         vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)
 
     def initial_values(self, R: float) -> InitialValues:

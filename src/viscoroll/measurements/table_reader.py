@@ -340,9 +340,9 @@ def understand(
         if len(table.headings) != len(bare):
             raise FileError(
                 path,
-                f"has no headings, and then must have {len(bare)} columns ({', '.join(bare)}), but "
-                f"has {len(table.headings)}: write headings into the file, and columns that are "
-                "missing; or, with "
+                f"has no headings, so that it must have {len(bare)} columns ({', '.join(bare)}), "
+                f"but it has {len(table.headings)}: write headings and missing columns into the "
+                "file; or, with "
                 f"{', '.join(map(repr, table.headings))} as HEADING, {_NAME_THEM[test]}",
             )
         named = dict(zip(bare, table.headings))
@@ -458,7 +458,8 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
     advice = "if strain or temperature differs, make a file for each (DMA: or a temperature column)"
-    table.require(holds, f"an earlier line has the same {name}, but another modulus: {advice}")
+    problem = f"an earlier line has the same {name}, but another modulus (ratio above {_REPEATED})"
+    table.require(holds, f"{problem}: {advice}; else remove one of the two lines")
     if change.max(initial=0.0) > _SCATTER:
         warn_of_model(
             f"{table.path}: lines with the same {name} have moduli that differ by up to "
