@@ -334,7 +334,8 @@ REFUSED = each(
     {
         "above ambient": lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD),
         "has no Material": lambda: vr.presets.RUBBER_ROLLER.heat_limit(70.0, load=1.0, **COLD),
-        "an elastic or rigid body": lambda: ROLLER.pair_temperatures(1.0, **COLD),
+        "roller has an elastic or rigid body:": lambda: ROLLER.pair_temperatures(1.0, **COLD),
+        "t has 60 s and then 60 s": lambda: ROLLER.warming(1.0, [60.0] * 2, **COLD, capacity=9e3),
         "below R": lambda: vr.conductance(0.1, thickness=0.2),
         "one a_T for each": lambda: vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(1.0,), T0=0.0),
         "a_T = ": lambda: vr.ShiftFactors(temperature=(0.0,), a_T=(-1.0,), T0=0.0),
@@ -360,6 +361,8 @@ def test_beyond_the_ranges_is_named():
     found = with_shift(Factors((-40.0, 60.0))).temperature(5.0, **MILD)
     assert not found.count
     assert "°C, but the shift of the material is defined only up to 60 °C" in found.reason
+    stopped = ROLLER.temperature(force=1e4, **MILD)
+    assert stopped.reason.endswith("there is no steady speed other than 0")
     measured = with_shift(WLF, measured=vr.Measured(1e-3, 1e-2, 0.0))
     marked = measured.temperature(5.0, **MILD)
     assert not marked.measured[0]

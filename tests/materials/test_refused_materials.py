@@ -87,7 +87,7 @@ REFUSED = [
         of_column,
         {
             "line 4 ('x') is not a line of numbers": "V0;mu\n1;0.1\n2;0.2\nx",
-            "line 4 ('3') has 1 cells": "V0;mu\n1;0.1\n2;0.2\n3",
+            "line 4 ('3') has 1 cell separated": "V0;mu\n1;0.1\n2;0.2\n3",
         },
         vr.FileError,
     ),
@@ -174,7 +174,7 @@ REFUSED = [
         ),
         {
             "unknown | at least one name": {"unknown": {}},
-            "unknown E | (1e+06, 2e+06) | contains 3e+06, the value with which the search starts": {
+            "unknown E | (1e+06, 2e+06) | contains 3e+06, the value of the cylinder with which": {
                 "unknown": {"E": (1e6, 2e6)}
             },
             "standard deviation of prior E is in kPa: must be a number without dimension": {
@@ -191,10 +191,10 @@ REFUSED = [
                 "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
             },
             "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
-            "run: V0 | given, as the record has no data that show it": {
+            "run: V0 | given, as the record has no values of V or x": {
                 "data": [vr.Coastdown(TIMES, sigma=0.1)]
             },
-            "temperature = 60.0 | unless the body has a shift: give it as shift={'material'": {
+            "temperature = 60.0 | unless material has a shift: give one as shift={'material'": {
                 "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
             },
             "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},
@@ -231,7 +231,9 @@ REFUSED = [
     *each(
         lambda **more: vr.read_dma(file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), **more),
         {
-            "columns = 'abc' (a text): must be a dict, as {'frequency'": {"columns": "abc"},
+            "columns = 'abc' (a text): must be a dict of headings of the file, as": {
+                "columns": "abc"
+            },
             "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
             "units | must be (unit of frequency, of moduli)": [{"units": "Hz"}],
             "units has | for | must be a unit of the dimension of": [
@@ -248,13 +250,13 @@ REFUSED = [
                 "loss": [DMA[2]],
                 "temperature": [0.0, 20.0],
             },
-            "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap; "
-            "leave": {"temperature": [20.0, 0.0]},
-            "shift has different factors for one temperature (to 0.5 K): must be one for each": {
+            "curves at 0 and 20 °C do not agree after any shift: must be equal where they overlap, "
+            "after a shift; leave": {"temperature": [20.0, 0.0]},
+            "shift has different factors for the temperature 20.1 °C: must be one factor for": {
                 "temperature": [20.0, 20.2],
                 "shift": [1.0, 1.1],
             },
-            "temperature has shape (1,): must be one number for each of the 2 curves": {
+            "temperature has shape (1,): must be one number for each curve; omega has 2": {
                 "temperature": [20.0]
             },
             "omega has no points for curve 2: must be a list with points for each curve": {
@@ -302,8 +304,8 @@ REFUSED = [
         {
             "omega | a list of numbers": (1.0, 1.0, 1.0),
             "omega | within a factor": ([1e-20, 1.0, 1e20], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]),
-            "storage has no plateau at low frequencies (0.0001 at omega = 0.01): must be that "
-            "of a solid, which": (DMA[0], DMA[0] ** 2, DMA[0]),
+            "storage has no plateau at low frequencies (0.0001 at omega = 0.01 rad s-1): must "
+            "be the modulus of a solid, which": (DMA[0], DMA[0] ** 2, DMA[0]),
             "storage is given beside the result of read_dma: must be left out, since that result "
             "contains it; give a number of terms": (vr.DynamicModuli(*DMA), 5),
             "loss is not given: must be given, as fit_prony(omega, storage, loss)": (
@@ -352,6 +354,8 @@ REFUSED = [
             "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
             "since it resists; reverse its sign": {"V": HUMP, "M": -resistance().M, "sigma": 0.01},
             "F is empty: must be at least one number": {"V": [1.0], "F": []},
+            "resistance: F has shape (3,): must be one value for each point, in the shape (1,) of "
+            "V": {"V": [1.0], "F": [1.0, 2.0, 3.0]},
         },
         sigma=0.1,
     ),
@@ -386,13 +390,15 @@ REFUSED = [
             "temperature | one number for each point": {"temperature": [[20.0]]},
             "temperature rises from 20 to 25 °C in steps of at most 0.5 K: must be equal "
             "within 1 K in each": {"temperature": np.linspace(20.0, 25.0, 20)},
-            "omega has shape (20,): must be one number for each point, (0,)": {"temperature": []},
-            "reference = 30.0: must be from 20.0 to 20.0 °C, as the curves, or at most 0.5 K": {
+            "omega has shape (20,): must be one number for each point, of shape (0,), as temp": {
+                "temperature": []
+            },
+            "reference = 30.0: must be from 20.0 to 20.0 °C, the range of temperature, or": {
                 "temperature": 20.0,
                 "reference": 30.0,
             },
             "shift = 1 at 0 °C and 10 at 20 °C | shift factors a_T (relaxation time divided by "
-            "that at reference), which fall with temperature (a list has the order": {
+            "that at reference), which fall with temperature; in a list they have the order": {
                 "temperature": TWO,
                 "shift": [10.0, 1.0],
             },

@@ -137,7 +137,7 @@ CASES = {
         "f [Hz];Phase [rad];E' [MPa];E'' [MPa];tan_delta\n<f; 0.9*tan; S/1e6; L/1e6; tan>\n",
         "choose one by",
         quoted(0),
-        "tan delta disagrees with storage and loss",
+        "tan delta differs by more than 1% from that of storage and loss",
     ),
     "a tan delta in per cent beside moduli": (
         "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 100*tan>\n",

@@ -72,7 +72,9 @@ REFUSED = each(
         "looks like temperatures | columns={'temperature'": (
             "theta_C;t [s];E(t) [Pa]\n20;1;2\n20;2;1\n60;1;2\n60;2;1\n"
         ),
-        "has 2 tables: keep one of them": "Time [s];E(t) [MPa]\n1;2\nTime [s];E(t) [MPa]\n1;2\n",
+        "has 2 tables (their rows begin in lines 2, 4): keep one of them in the file": (
+            "Time [s];E(t) [MPa]\n1;2\nTime [s];E(t) [MPa]\n1;2\n"
+        ),
     },
     vr.FileError,
 )

@@ -379,7 +379,10 @@ def build(
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
         found = "that of the coupled solution of pressure and shear, which an FMU cannot contain"
-        allowed = "give the roller (its FMU has the fast law), or export the law as C code"
+        allowed = (
+            "give the roller (its FMU has the fast law), or export the law as C code with "
+            "vr.tables.export"
+        )
         sentence = f"the contact law that is given is {found}: {allowed}"
         raise ParameterError("given", found, allowed, sentence)
     law = tables.law(given)  # which warns of a Cylinder

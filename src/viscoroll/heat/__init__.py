@@ -192,21 +192,18 @@ class Temperatures(Equilibria):
     m of its length.
 
     The last axis counts the equilibria of a state by rising temperature; shorter lists are padded
-    with NaN (``stable``: False).  The axes before it are those of the states; of one state there
-    are none.
+    with NaN (``stable``: False).  The axes before it are those of the states, none of one state.
 
     Attributes
     ----------
     temperature : of the body that relaxes (of two of one material: of both), degrees Celsius.
-    stable : whether the temperature returns after a small disturbance; under a given load also the
-        speed.
+    stable : whether temperature (under a load also the speed) returns after a small disturbance.
     V : speed, m/s, given or of the load at that temperature.
     C_rr, M, M_half_space, M_cylinder : rolling resistance at that temperature.
     loss, loss_slip : power lost, W/m: all of it, and that in slip (0 of a freely rolling cylinder).
     measured : whether the material was measured at the rates of the contact; True without data.
     count : number of equilibria of each state, an int for one state.
-    reason : "" where an equilibrium lies within the ranges of shift and data, else why not, for
-        each state.
+    reason : of each state: "" with an equilibrium within ranges of shift and data, else why not.
 
     Examples
     --------
@@ -306,11 +303,9 @@ def temperature(
         counts as the force) the loss in slip heats too.  None: the speed follows from the load at
         each temperature, as in :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
-    conductance : heat that the body gives off per kelvin, W/(m K), > 0
-        (:func:`viscoroll.conductance`).
+    conductance : heat given off per kelvin, W/(m K), > 0 (:func:`viscoroll.conductance`).
     force, torque, slope : loads as in :func:`steady`, numbers or arrays.
-    slip_share : part of the loss in slip that heats the cylinder, in [0, 1]; the rest heats the
-        base.
+    slip_share : part of the loss in slip, in [0, 1], that heats the cylinder, not the base.
 
     Returns
     -------
@@ -331,8 +326,7 @@ def temperature(
     Warns
     -----
     ModelWarning
-        An equilibrium at which the transit frequency is outside the band in which the material was
-        measured.
+        An equilibrium whose transit frequency is outside the band of the material's data.
 
     Examples
     --------
@@ -362,7 +356,11 @@ def temperature(
     driven = {name: plain[name] for name in driven}
     loaded = any(value is not None for value in driven.values())
     if V is None and not loaded:
-        raise described_error("V", "is not given", "given, or a force, torque or slope instead")
+        raise described_error(
+            "V",
+            "is not given, and neither is a force, torque or slope",
+            "given, or one of these three instead",
+        )
     beside = driven if loaded and V is not None else None
     states = heat_states(roller, "temperature", plain, slip_share, beside)
     if states.V is None:
@@ -384,7 +382,8 @@ def _under_load(
     driven: force, torque and slope as :func:`temperature` has them.
     Each branch of M(V) = force + torque/R at the reference, with speed V_0 and loss w_0, is a
     balance of its own, in which the speed is V_0/a_T and the loss w_0/a_T.
-    Returns (fields, as :meth:`.HeatStates.fields`; the zeros, stable only where the speed is too).
+    Returns (fields, as :meth:`.HeatStates.fields`, with the number of "branches" of each state, of
+    a speed other than 0; the zeros, stable only where the speed is too).
     Raises ParameterError for a material with a vertical shift, and as :func:`viscoroll.steady`.
     """
     if states.body.material.vertical_shift is not None:
@@ -418,6 +417,7 @@ def _under_load(
         "temperature": zeros.theta,
         "a_T": np.where(zeros.theta > states.curve.high, np.nan, a_T),
         "C_rr": rows["M"] / (states.load * states.R)[n[k]],
+        "branches": 1.0 * np.bincount(n, minlength=states.load.size),
     }
     return rows, Zeros(n[k], zeros.theta, zeros.stable & at["stable"][k])
 
@@ -437,8 +437,10 @@ def _reasons(
         own = np.flatnonzero(zeros.state == n)
         if not own.size:
             found[n] = (
-                f"at no temperature up to {HOTTEST:g} °C does the roller give off as much heat as "
-                "its loss: it warms without limit, or it cannot roll at a steady speed"
+                f"the loss exceeds the heat given off at every temperature up to {HOTTEST:g} °C: "
+                "raise conductance, or lower the load or the speed"
+                if rows.get("branches", states.load)[n]  # at a given V it is not asked
+                else "with this force, torque or slope there is no steady speed other than 0"
             )
             continue
         at = own[np.argmin(zeros.theta[own])]
@@ -526,7 +528,13 @@ def pair_temperatures(
     if pair is None or scene.shape or pair.covered or 1.0 in [b.prony.alpha for b in pair.bodies]:
         raise described_error(
             "roller",
-            "has arrays, a thickness, an elastic or rigid body, or no Material",
+            "has no Material"
+            if pair is None
+            else f"has arrays of shape {scene.shape}"
+            if scene.shape
+            else f"has a thickness of the {pair.covered}"
+            if pair.covered
+            else "has an elastic or rigid body",
             "a Cylinder with two viscoelastic Materials without thickness, and no arrays; if only "
             "one body is viscoelastic, call vr.temperature",
         )

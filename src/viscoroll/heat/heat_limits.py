@@ -71,8 +71,7 @@ class TurningPoints(NamedTuple):
 
     V : speeds, m/s, (n,).
     temperature : degrees Celsius, (n,).
-    is_runaway : whether the colder branch ends there as the speed rises; else the hotter one ends
-    as it falls, (n,).
+    is_runaway : whether the colder branch ends there as V rises, else the hotter as V falls, (n,).
     """
 
     V: Floats
@@ -89,8 +88,7 @@ def heat_limit(
     ambient: Numbers,
     conductance: Numbers,
 ) -> Values:
-    """Find the largest load at each speed, or the largest speed at each load, at which a roller
-    stays cool enough.
+    """Find the largest load at each speed, or speed at each load, at which a roller is cool enough.
 
     It starts at ambient temperature, rolls freely, and never passes the allowed temperature.
 
@@ -141,7 +139,7 @@ def heat_limit(
     check_ambient(allowed, curve, "allowed")
     value = check_array(name, plain[name])
     if name == "V" and not value.all():
-        raise described_error("V", "is or contains 0, where rolling makes no heat", "other than 0")
+        raise described_error("V", "has the value 0, where rolling makes no heat", "other than 0")
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
         raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g} °C")
     arrays = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
@@ -166,8 +164,7 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
 
     roller: the cylinder.
     allowed: allowed temperature, degrees Celsius.
-    given: name -> array, "ambient", "conductance", and "load" (the speed is sought) or "V" (the
-        load is sought).
+    given: name -> array, "ambient", "conductance", and "load" (V is sought) or "V" (load is).
     Returns (largest speed, m/s, or load, N/m; temperature from which a larger one leads beyond the
     allowed one; whether the cold branch ends there), arrays in the shape of the states.
     """
@@ -247,8 +244,7 @@ def _limit_of_cover(
 
 
 def turning_points(roller: Roller, *, ambient: float, conductance: float) -> TurningPoints:
-    """Find the speeds at which equilibria of heat appear or vanish: where a cold branch ends, and
-    where a hot one does.
+    """Find the speeds at which equilibria of heat appear or vanish: ends of cold or hot branches.
 
     Parameters
     ----------
@@ -295,7 +291,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     given = {"ambient": ambient, "conductance": conductance}
     states = heat_states(roller, "turning_points", given)
     if states.shape:
-        raise shape_error("roller", states.shape, "a Cylinder without arrays")
+        raise shape_error("roller", states.shape, "a Cylinder of single numbers, without arrays")
 
     curve = states.curve
 
@@ -526,8 +522,10 @@ def warming(
     times = check_array("t", t, unit=scale, low=0.0)
     if times.ndim != 1 or not times.size:
         raise shape_error("t", times.shape, "a list of at least one time")
-    if (np.diff(times) <= 0.0).any():
-        raise described_error("t", "does not ascend", "in ascending order")
+    if (falls := np.flatnonzero(np.diff(times) <= 0.0)).size:
+        n = falls[0]
+        order = f"has {times[n]:g} s and then {times[n + 1]:g} s"
+        raise described_error("t", order, "in ascending order, with no time twice")
     speed, corners = _speed_of(V, scale)
     every = np.arange(theta.size)
 
@@ -563,7 +561,8 @@ def warming(
         raise described_error(
             "temperature",
             f"of the roller rises to {hot:.5g} degrees Celsius",
-            f"at most {states.curve.high:g}, where the shift of its material ceases to be defined",
+            f"at most {states.curve.high:g}, up to which the shift of its material is defined; "
+            "lower V or the load, or end t earlier",
         )
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
     rows = states.fields(np.repeat(every, times.size), course.ravel(), V_t)
@@ -591,7 +590,8 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
     V = strip_labels({"V": V}, scale)[0]["V"]
     if isinstance(V, Schedule):
         if V.values.ndim > 1 or V.times.ndim > 1:
-            raise shape_error("V", V.values.shape, "a Schedule of one motion")
+            found = f"is a Schedule with values of shape {V.values.shape}, times {V.times.shape}"
+            raise described_error("V", found, "a Schedule with one list of each")
         # at a jump the value after it
         return lambda time: float(np.interp(time, V.times, V.values)), V.times
     if callable(V):

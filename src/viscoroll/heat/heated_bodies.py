@@ -175,7 +175,8 @@ def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
         raise ParameterError(
             "shift",
             None,
-            "given to the viscoelastic Material, as vr.WLF(...); in a file as key wlf or arrhenius",
+            "given to the viscoelastic Material, as shift=vr.WLF(T0=20.0); in a file as key wlf or "
+            "arrhenius",
         )
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
         pole = shift.pole
@@ -202,7 +203,7 @@ def _make_curve(material: Material, *shifts: int) -> ShiftCurve:
         raise described_error(
             "shift",
             f"rises with the temperature at {theta[rises[0]]:.4g} degrees Celsius",
-            "a function (a shift factor) that nowhere rises with the temperature",
+            "a function that returns shift factors a_T, which do not rise with the temperature",
         )
     # log2 a_T falls: reversed it ascends, as interpolation requires
     slopes = np.diff(log2) / np.diff(theta)
@@ -242,8 +243,9 @@ def _sampled(shift: Any, reference: float | None, vertical: Any) -> tuple[Floats
     if unknown.size == theta.size:
         raise described_error(
             "shift",
-            "is not defined at the reference temperature of the material",
-            "a function that returns a number > 0 there",
+            "gives no number > 0 at the reference temperature of the material"
+            + f", {reference} degrees Celsius" * (reference is not None),
+            "a function that returns shift factors a_T, numbers > 0, there and around it",
         )
     own = np.nanargmin(np.abs(np.log(a_T)))  # at the reference a_T is 1
     first = unknown[unknown < own].max(initial=-1) + 1
@@ -446,7 +448,9 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
     if not found:
         raise described_error(
-            "material", "and base are elastic or rigid, and roll without loss", "viscoelastic"
+            "material",
+            "and base are elastic or rigid, and roll without loss",
+            "viscoelastic, at least one of the two",
         )
     # each has half of both losses, at one temperature; equal series are not enough for that
     same = "thickness", "temperature", "shift", "vertical_shift"
@@ -458,7 +462,7 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
             "base",
             "is viscoelastic too, and differs from material",
             "elastic, rigid, or the same material with equal thickness, temperature and shift; "
-            "for two different viscoelastic half-spaces call vr.pair_temperatures",
+            "for the temperatures of two different half-spaces call vr.pair_temperatures",
         )
     return found[0]
 
@@ -509,9 +513,11 @@ def heat_states(
     if vertical and (covered or (remade and driven is not None)):
         raise described_error(
             "vertical_shift",
-            "of the Material is given",
-            "left out for a cover, and for a half-space on an elastic body under a force, torque "
-            "or slope: the contact law would differ at each temperature",
+            "of the Material is given "
+            + (
+                "for a cover" if covered else "beside an elastic body, under force, torque or slope"
+            ),
+            "left out there, as the contact law would differ at each temperature",
         )
     several = scene.material_array
     index: Any = 0.0 if several is None else np.arange(float(len(several)))
@@ -560,7 +566,8 @@ def check_ambient(ambient: Any, curve: ShiftCurve, name: str) -> None:
             raise described_error(
                 name,
                 f"= {at:g} degrees Celsius is outside the range of the material's shift factors",
-                f"from {curve.low:g} to {curve.high:g} degrees Celsius",
+                f"at least {curve.low:g} degrees Celsius"
+                + f" and at most {curve.high:g}" * math.isfinite(curve.high),
             )
 
 

@@ -74,7 +74,7 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
                 )
         if given.shape != (len(sizes),):
             raise shape_error(
-                "temperature", given.shape, f"one number for each of the {len(sizes)} curves"
+                "temperature", given.shape, f"one number for each curve; omega has {len(sizes)}"
             )
         if 0 in sizes:
             raise described_error(
@@ -92,7 +92,8 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     flat = [check_array(name, column, above=0.0) for name, column in named.items()]
     for name, column in zip(named, flat):
         if column.shape != given.shape:
-            raise shape_error(name, column.shape, f"one number for each point, {given.shape}")
+            others = f"of shape {given.shape}, as temperature or, if that is one number, omega"
+            raise shape_error(name, column.shape, f"one number for each point, {others}")
     return given, flat, first
 
 
@@ -177,9 +178,12 @@ def listed_factors(
     found = np.empty(len(temperatures))
     # of several curves of a set the last factor stays, with which all are compared
     found[of_curve] = factors
-    if (found[of_curve] != factors).any():
+    if (differs := found[of_curve] != factors).any():
+        at = temperatures[of_curve[differs.argmax()]]
         raise described_error(
-            "shift", "has different factors for one temperature (to 0.5 K)", "one for each"
+            "shift",
+            f"has different factors for the temperature {at:g} °C",
+            f"one factor for each temperature (two within {LEAST_DISTANCE:g} K count as one)",
         )
     base = reference_of(
         base, temperatures, [T for T, a_T in zip(temperatures, found) if abs(a_T - 1.0) <= _ONE]
@@ -319,13 +323,14 @@ def master_curve(
             raise ParameterError(
                 "reference",
                 base,
-                f"from {low} to {high} °C, as the curves, or at most 0.5 K beyond",
+                f"from {low} to {high} °C, the range of temperature, or at most 0.5 K beyond",
             )
         curves = []
         for n, T in enumerate(temperatures):
             part = [column[of_point == n] for column in (x, *moduli)]
-            curve = data_of(Curve, *part, fewest=2, place=f" at {T:g} °C")
-            curves.append(_LogCurve(thinned(curve), on))
+            place = f" at {T:g} °C"
+            curve = data_of(Curve, *part, fewest=2, place=place)
+            curves.append(_LogCurve(thinned(curve), on, place))
         a_T, mismatch, freedom = _shifts_by_overlap(curves, temperatures)
         found = ShiftFactors(temperature=tuple(temperatures), a_T=tuple(a_T), T0=base)
         # relative to the coldest curve so far, now to the reference, which may lie between curves
@@ -349,7 +354,8 @@ def master_curve(
             "shift" if shift is not None else "shift found by the overlap",
             f"{factor[0]:.3g} at {low:g} °C and {factor[-1]:.3g} at {high:g} °C",
             "shift factors a_T (relaxation time divided by that at reference), which fall with "
-            "temperature (a list has the order of the curves): check the curves where they rise, "
+            f"temperature; {'in a list they have the order of the curves; ' * (shift is not None)}"
+            f"check the {'curves' if shift is None else 'factors'}, since a_T rises "
             f"{', '.join(rises)}",
         )
     if rises:
@@ -377,7 +383,7 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom)
     return [
-        f"from {cold:g} to {warm:g} °C (free within {free:.1f} decades)"
+        f"from {cold:g} to {warm:g} °C (all shifts within {free:.1f} decades fit)"
         for (cold, warm), free in pairs
         if free > LARGEST_FREEDOM
     ]
@@ -400,26 +406,28 @@ def _shifts_by_overlap(
     found = [_align(*pair) for pair in pairwise(curves)]
     torn = []
     for alignment, (cold, warm) in zip(found, pairwise(temperatures)):
-        name = f"moduli at {cold:g} and {warm:g} °C"
+        name = f"curves at {cold:g} and {warm:g} °C"
         if not alignment.mismatch <= _LARGEST_MISMATCH:
             raise described_error(
                 name,
                 "do not agree after any shift",
-                "curves that overlap; leave one out, or give factors by shift= (in a shell: --wlf)",
+                "equal where they overlap, after a shift; leave one of the curves out, or give "
+                "factors by shift= (in a shell: --wlf)",
             )
         if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
             raise described_error(
                 name,
                 f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve",
-                "curves that overlap more; measure between these temperatures, or give known "
-                "factors by shift= (in a shell: --wlf)",
+                "closer in temperature, so that they overlap more; measure between these "
+                "temperatures, or give known factors by shift= (in a shell: --wlf)",
             )
         if alignment.disagree:
             torn.append(f"from {cold:g} to {warm:g} °C")
     if torn:
         warn_of_model(
             f"storage and loss modulus overlap best at different shifts {', '.join(torn)}; the "
-            'better one decides: compare with a fit with on="storage" (in a shell: --on storage)'
+            'one that agrees better decides: compare with a fit with on="storage" (in a shell: '
+            "--on storage)"
         )
     # reshaped, since found is empty of a single curve
     steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
@@ -435,13 +443,14 @@ class _LogCurve:
     interpolate : the interpolant of y: a function of ln omega, (k,), that returns y there.
     """
 
-    def __init__(self, curve: Curve, on: str) -> None:
+    def __init__(self, curve: Curve, on: str, place: str) -> None:
         """Take logarithms, average those of repeated frequencies, and make the interpolant.
 
         It is a cubic spline, of two or three different frequencies a monotone one (PCHIP).
 
         curve : :class:`Curve`, storage and loss modulus.
         on : "storage" or "both": the moduli that are kept.
+        place : words for the temperature of the curve, for the error.
         Raises ParameterError for a single frequency.
         """
         from scipy import interpolate
@@ -456,7 +465,7 @@ class _LogCurve:
         if self.x.size < 2:
             raise described_error(
                 "omega",
-                "has only one value at one of the temperatures",
+                f"has only one value{place}",
                 "two frequencies or more at each temperature",
             )
         kind = interpolate.CubicSpline if self.x.size > 3 else interpolate.PchipInterpolator

@@ -116,7 +116,8 @@ class Record:
                     f"one per quantity in a dict, as {{{': ..., '.join(map(repr, among))}: ...}}",
                 )
             sigma = {among[0]: sigma}
-        check_names(self.label("sigma"), sigma, among, "a quantity of the record")
+        kind = f"a {'measured ' * bool(self.measured)}quantity of the record"
+        check_names(self.label("sigma"), sigma, among, kind)
         sigma = {name: value for name, value in sigma.items() if value is not None}
         for name, value in sigma.items():
             label = f"sigma of {name}"
@@ -125,8 +126,15 @@ class Record:
             if not array.size:
                 raise described_error(self.label(name), "is empty", "at least one number")
         shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
-        if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
-            raise shape_error(self.label(self.QUANTITIES[0]), shape, "one value for each point")
+        points = broadcast_shape(**{name: arrays[name] for name in self.COORDINATES})
+        for name, array in arrays.items():
+            if np.broadcast_shapes(array.shape, points) != points:
+                raise shape_error(
+                    self.label(name),
+                    array.shape,
+                    f"one value for each point, in the shape {points} of "
+                    f"{' and '.join(self.COORDINATES)}",
+                )
         whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
         sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
         # by ``vars``, as the class is frozen
@@ -472,7 +480,9 @@ class Coastdown(Record):
             )
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):
-            raise ParameterError(self.label("t0"), self.t0, "a number, or a range (low, high)")
+            raise ParameterError(
+                self.label("t0"), self.t0, "a number, or a range (low, high), in s"
+            )
         vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)
 
     def initial_values(self, R: float) -> InitialValues:
@@ -522,8 +532,9 @@ class Coastdown(Record):
         for name, value, data in (("V0", self.V0, speeds), ("omega0", self.omega0, record.omega)):
             if value is None:
                 if data is None:
+                    shown = "V or x" if name == "V0" else name.removesuffix("0")
                     raise ParameterError(
-                        self.label(name), None, "given, as the record has no data that show it"
+                        self.label(name), None, f"given, as the record has no values of {shown}"
                     )
                 first = float(data[0])
                 most = float(np.abs(data).max())

@@ -32,7 +32,7 @@ from ..contact_mechanics import contact, transit_speeds
 from ..core import Floats, described_error
 from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Measured, Prony
 from ..rollers import Scene
-from .dynamic_moduli import Data, Spectrum, misfits, relative_columns, residuals
+from .dynamic_moduli import UNITS, Data, Spectrum, misfits, relative_columns, residuals
 
 # --- Least squares of measured moduli by a discrete spectrum ---
 
@@ -295,8 +295,8 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
         side, n = ("long times", -1) if x == "t" else ("low frequencies", 0)
         raise described_error(
             name,
-            f"has no plateau at {side} ({data[1][n]:g} at {x} = {data[0][n]:g})",
-            "that of a solid, which tends to a constant > 0; add or correct data there",
+            f"has no plateau at {side} ({data[1][n]:g} at {x} = {data[0][n]:g} {UNITS[x]})",
+            "the modulus of a solid, which tends to a constant > 0; add or correct data there",
         )
     limit = _NEAR_BEST * min(_size(data, spectrum) for spectrum, _ in starts)
     reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)

@@ -95,21 +95,28 @@ def storage_and_loss(
     rounding = sum(columns[name].half / np.abs(columns[name].values) for name in pair)
     both = " and ".join(pair)
     if pair[1] == "modulus":  # a difference of squares
-        other = exact["loss" if pair[0] == "storage" else "storage"]
+        table.require(
+            ~np.isnan(storage + loss),
+            f"{pair[0]} is above the magnitude of the complex modulus or compliance: correct the "
+            "line, or the unit of one of the two columns",
+        )
+        wanted = "loss" if pair[0] == "storage" else "storage"
+        other = exact[wanted]
         # of other^2 = modulus^2 - given^2 the relative error is at most modulus^2/other^2 times the
         # sum of those of both
         rounding *= (exact["modulus"] / other) ** 2
         table.require(
             rounding <= _ROUNDED,
-            f"{both} (the magnitude) differ too little, for their number of digits, to give the "
-            "other modulus: add a column of tan delta",
+            f"{pair[0]} and the magnitude of the complex modulus or compliance differ too little, "
+            f"for their number of digits, to give {wanted}: add a column of tan delta",
         )
     for name in columns.keys() - set(pair):
         values, half = columns[name]
         table.require(
             np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half,
-            f"{name} disagrees with {both}: give the unit of one, as units={{'tan delta': '%'}} "
-            "(in a shell: --units 'tan delta=%'), or remove one of these columns",
+            f"{name} differs by more than {AVERAGED:.0%} from that of {both}: give the unit of "
+            "one, as units={'tan delta': '%'} (in a shell: --units 'tan delta=%'), or remove one "
+            "of these columns",
         )
     return storage, loss
 
@@ -303,7 +310,9 @@ def understand(
     """
     if not isinstance(columns, Mapping | None):
         raise ParameterError(
-            "columns", describe_value(columns), "a dict, as {'frequency': 'f [Hz]'}"
+            "columns",
+            describe_value(columns),
+            f"a dict of headings of the file, as {{{BARE[test][0]!r}: HEADING}}",
         )
     named = dict(columns or {})
     known = QUANTITIES[test]
@@ -331,8 +340,9 @@ def understand(
         if len(table.headings) != len(bare):
             raise FileError(
                 path,
-                f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
-                f"({', '.join(bare)}): write headings and missing columns into the file; or, with "
+                f"has no headings, so that it must have {len(bare)} columns ({', '.join(bare)}), "
+                f"but it has {len(table.headings)}: write headings and missing columns into the "
+                "file; or, with "
                 f"{', '.join(map(repr, table.headings))} as HEADING, {_NAME_THEM[test]}",
             )
         named = dict(zip(bare, table.headings))
@@ -378,7 +388,9 @@ def _units(units: Any, test: str) -> tuple[ByQuantity, ByQuantity]:
             conversion(str(unit), UNITS[name])
         except ParameterError as error:
             raise described_error(
-                "units", f"has {unit!r} for {name}", f"a unit of the dimension of {UNITS[name]}"
+                "units",
+                f"has {unit!r} for {name}",
+                f"a unit of the dimension of {UNITS[name]}{', as %' * (UNITS[name] == '1')}",
             ) from error
     return (pairs, {}) if by_name else ({}, pairs)
 
@@ -403,14 +415,19 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
         if UNITS[column.name] == unit and not column.stated
     ]
     for column in assumed:
-        if any(each.stated and UNITS[each.name] == UNITS[column.name] for each in taken):
+        if alike := [
+            each.heading for each in taken if each.stated and UNITS[each.name] == UNITS[column.name]
+        ]:
             raise table.error(
-                f"column {column.heading!r} has no unit, but other columns like it do: "
+                f"column {column.heading!r} has no unit, but column {alike[0]!r} has one: "
                 f"{unit_advice(column.name)}"
             )
     if assumed:
         units = {column.name: column.unit for column in assumed}
-        doubt = f"; {moduli.max():g} Pa are too low for rubber: are moduli in MPa, or logarithms?"
+        doubt = (
+            f"; moduli up to {moduli.max():g} Pa are too low for rubber: are they in MPa, or "
+            "logarithms?"
+        )
         warn_of_model(
             f"{table.path}: columns lack a unit, and units={units} are assumed: write the "
             "units into the file, or give yours by units= (in a shell: --units)"
@@ -441,7 +458,8 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     # back to the order of the file: of two rows the one that is later there, by the stable sort
     holds[order[1:]] = change <= np.log(_REPEATED)
     advice = "if strain or temperature differs, make a file for each (DMA: or a temperature column)"
-    table.require(holds, f"an earlier line has the same {name}, but another modulus: {advice}")
+    problem = f"an earlier line has the same {name}, but another modulus (ratio above {_REPEATED})"
+    table.require(holds, f"{problem}: {advice}; else remove one of the two lines")
     if change.max(initial=0.0) > _SCATTER:
         warn_of_model(
             f"{table.path}: lines with the same {name} have moduli that differ by up to "
@@ -484,8 +502,9 @@ def temperatures_of_lines(table: Table) -> Floats | None:
         values = {*lines[start].values()}
         if len(values) != 1 or None in values:
             raise table.error(
-                f"the numbers from line {numbers[start]} on need a line above them with one "
-                "temperature, as 'Temperature 20 °C'"
+                f"the numbers from line {numbers[start]} on have "
+                f"{'several temperatures, or one in doubt,' if values else 'no temperature'} in "
+                "the lines above them: write one such line, as 'Temperature 20 °C'"
             )
         temperature[start:] = values.pop()  # blocks below overwrite theirs
     return temperature

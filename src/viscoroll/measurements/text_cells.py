@@ -110,7 +110,8 @@ def fault_of(cell: str, decimal: str) -> str:
             "has a comma or point that may mark decimals or thousands; write for example "
             "1150 or 1.15 in place of 1.150, and one decimal mark in the whole file"
         )
-    return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else '; remove the row'}"
+    advice = "; remove this line, or choose another column"
+    return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else advice}"
 
 
 def numbers_of(cells: list[str]) -> Numbers:

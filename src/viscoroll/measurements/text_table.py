@@ -95,7 +95,10 @@ class Table(NamedTuple):
     def refuse_several(self) -> None:
         """Raise FileError for a file with several tables."""
         if len(self.starts) > 1:
-            raise self.error(f"has {len(self.starts)} tables: keep one of them in the file")
+            raise self.error(
+                f"has {len(self.starts)} tables (their rows begin in lines "
+                f"{', '.join(map(str, self.starts))}): keep one of them in the file"
+            )
 
     def require(self, holds: Any, problem: str) -> None:
         """Raise FileError, with the number and the cells of its line, for the first row for which a
@@ -171,8 +174,8 @@ def read_table(
     if not widths:
         raise FileError(
             path,
-            "has no line of numbers: write columns of numbers, separated by tabs, semicolons, "
-            "bars, commas or blanks",
+            "has no line of numbers: choose a text file with columns of numbers, separated by "
+            "tabs, semicolons, bars, commas or blanks",
         )
     layout = _Layout(
         path=path,
@@ -296,7 +299,9 @@ class _Layout(NamedTuple):
         for line in lines[:first]:
             if not line.comment and len(line.cells) == width:
                 raise self.fault(
-                    line, "has neither headings nor numbers: remove this line, or begin it with #"
+                    line,
+                    "has numbers and more texts, so that it is neither a line of headings nor one "
+                    "of numbers: correct it, remove it, or begin it with #",
                 )
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
@@ -345,8 +350,8 @@ class _Layout(NamedTuple):
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 raise self.fault(
                     row,
-                    f"has {len(row.cells)} cells {self.cut}, but the number of headings in line "
-                    f"{line.number} is {len(names)}: correct one of these two lines",
+                    f"has {len(row.cells)} cell{'s' * (len(row.cells) > 1)} {self.cut}, but line "
+                    f"{line.number}, the first of the table, has {len(names)}: correct one of them",
                 )
         return names, self.units(body[:first], len(names)), rows
 
@@ -385,7 +390,9 @@ class _Layout(NamedTuple):
                 found = (cells + found)[:width]  # "" behind a line that is shorter
             elif not (line.comment or self.is_title(line.text)):
                 raise self.fault(
-                    line, f"has neither units nor numbers {self.cut}: remove it, or begin it with #"
+                    line,
+                    "below the headings is neither a line of numbers nor the only line of known "
+                    f"units {self.cut}: correct it, remove it, or begin it with #",
                 )
         return found
 
@@ -458,7 +465,7 @@ def find_column(table: Table, name: str) -> int | None:
         alike = exact or len({*headings}) < len(headings)
         advice = "rename or remove one of them" if alike else "give the heading with its unit"
         raise table.error(
-            f"columns {' and '.join(map(repr, headings))} are both named {name!r}: {advice}"
+            f"columns {' and '.join(map(repr, headings))} have the same name {name!r}: {advice}"
         )
     return found[0] if found else None
 

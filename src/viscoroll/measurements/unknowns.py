@@ -126,7 +126,7 @@ def unknowns_of(
             starts[f"{name}:{record_name}"] = start
             if span is not None:
                 ranges.setdefault(f"{name}:{record_name}", span)
-    check_names("unknown", ranges, starts, "an input")
+    check_names("unknown", ranges, starts, "an input that can be unknown")
     check_names("prior", priors, ranges, "an unknown")
     return [
         _make_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()
@@ -154,10 +154,11 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
         raise ParameterError(f"unknown {name}", describe_value(span), "(low, high) with low < high")
     low, high = pair.tolist()
     if not low <= start <= high:
+        source = " of the record" if ":" in name else " of the cylinder" * (name not in _BEARING)
         raise ParameterError(
             f"unknown {name}",
             f"({low:g}, {high:g})",
-            f"a range that contains {start:.6g}, the value with which the search starts",
+            f"a range that contains {start:.6g}, the value{source} with which the search starts",
         )
     linear = name.split(":")[0] in _LINEAR
     unit = max(abs(start), _UNIT * (high - low)) if linear else None
@@ -167,7 +168,7 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     try:
         value, sd = prior
     except (TypeError, ValueError):
-        allowed = "(value, standard deviation)"
+        allowed = f"(value, {'' if linear else 'relative '}standard deviation)"
         raise ParameterError(f"prior {name}", describe_value(prior), allowed) from None
     mean = unknown.to_u(check_number(f"prior {name}", value, **bounds))
     # of a logarithmic coordinate the standard deviation of the logarithm is given
@@ -210,7 +211,7 @@ def cylinder_of(
                 raise ParameterError(
                     record.label("temperature"),
                     record.temperature,
-                    f"left out, unless the body has a shift: give it as shift={{{section!r}: "
+                    f"left out, unless {section} has a shift: give one as shift={{{section!r}: "
                     f"vr.WLF(T0=20.0)}} or, in a file, wlf = {{ T0 = 20.0 }} in [{section}]",
                 )
             changed = changed.at(record.temperature, shift)
