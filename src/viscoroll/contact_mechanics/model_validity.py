@@ -431,9 +431,9 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
         f"M up to {largest(error_of_M):.1g} P l0"
     )
     if most > 1.0:
-        errors = (
-            f"the law does not hold, since the contact slips at both ends (value up to {most:.2g}, "
-            "allowed 1)"
+        errors += (
+            f", and more where traction.value is above 1 (here up to {most:.2g}): there the "
+            "contact slips at both ends, and this law does not hold"
         )
     sentence = (
         f"the effect of shear on the pressure is approximate (as with coupled=False): {errors}; "
