@@ -134,9 +134,9 @@ def tabulate(
         edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
 
     # two passes: the states of a row need its middle creepage, which is smoothed over all rows
-    run_blocks(begin, solved, 1, progress="coupled table: kernels" if progress else None)
+    run_blocks(begin, solved, 1, progress="coupled solution, 1 of 2" if progress else None)
     edges[:solved, 0] = _without_outliers(edges[:solved, :3])
-    run_blocks(solve, solved, 1, progress="coupled table: states" if progress else None)
+    run_blocks(solve, solved, 1, progress="coupled solution, 2 of 2" if progress else None)
     edges[solved:] = edges[0]
     fields[solved:] = fields[0]
     made = CoupledRows(mu, *map(lock_array, (u, t, edges, fields)))

@@ -140,7 +140,7 @@ def warn_of_contact(
             + _absurd_sizes(data)
             + [_FASTER_THAN_WAVES] * too_fast,
             "contact",
-            "validity(V)",
+            "validity(V) of the roller",
         )
     if data.measured_speeds is not None and is_outside(of_band, data.measured_speeds):
         _warn_of_band(data, reduced)

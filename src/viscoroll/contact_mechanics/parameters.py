@@ -549,7 +549,7 @@ def refuse_arrays(
     roller: Roller,
     scene: Parameters,
     names: Iterable[str],
-    allowed: str = "a single number",
+    allowed: str = "a single number in one call: make a call for each",
     slope: Any = None,
 ) -> None:
     """Raise ParameterError for the first of some parameters that is an array, also of shape (1,).

@@ -329,7 +329,7 @@ def info(path: str | PathLike[str]) -> str:
             word = f"node{'s' * (nodes.size > 1)} in [{nodes[0]:g}, {nodes[-1]:g}]"
             unit = unit_of(table[name].attrs) or "dimensionless"
             lines.append(f"  {name:<8} {nodes.size:>5} {word}, {unit}")
-        lines += ["", f"  {'field':<26}{'axes':<18}error between the nodes"]
+        lines += ["", f"  {'field':<26}{'axes':<18}absolute error between the nodes"]
         for name in fields_of(table):
             field = table[name]
             errors = ", ".join(
