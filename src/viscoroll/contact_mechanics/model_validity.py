@@ -281,7 +281,8 @@ def _describe_free(free: FreeRolling) -> str:
         return text + "an elastic cylinder never stops"
     fine = free.reach(0.1 * STEADY_LIMIT)
     start = free.start()
-    text += f"left to coast it rolls {whole:.4g}{length}; the error of its computed V is below "
+    text += f"left to coast the cylinder rolls {whole:.4g}{length}; "
+    text += "the error of its computed V is below "
     if fine.time:  # 0 where the error is above 1 % at the start already
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % until rest"
     if fine.speed:

@@ -35,7 +35,7 @@ from ..core import (
     write_dataset,
 )
 from ..laws import check_nodes, friction_limit, increases, pack_spline, refuse_filled
-from ..materials import KIND, checked_netcdf
+from ..materials import COUPLED, KIND, checked_netcdf
 
 # --- The schema of the file of a grid ---
 
@@ -321,8 +321,9 @@ def info(path: str | PathLike[str]) -> str:
     lines = [f"{path}: {about[KIND]}, {size:.0f} kB", about.get("title", "no title"), ""]
     if is_law(table):
         stated = checked_netcdf.stated_errors(table)
-        lines += [f"  {'function':<18}largest error"]
-        lines += [f"  {name:<18}{error:.1e}" for name, error in stated.items()]
+        error = "absolute error" if about[KIND] == COUPLED else "relative error"
+        lines += [f"  {'function':<18}largest {error}"]
+        lines += [f"  {name:<18}{each:.1e}" for name, each in stated.items()]
     else:
         for name in axes_of(table):
             nodes = table[name].values
