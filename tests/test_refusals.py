@@ -43,7 +43,7 @@ UNSTEADY = ROLL | {"roller": RUBBER_ROLLER, "V0": 30.0, "omega0": 30.0}
 REFUSED = each(
     vr.contact,
     {
-        "method = 'direct': must be 'table' for derivatives": {"method": "direct", "slopes": True},
+        "method = 'direct': must be 'table' if slopes=True": {"method": "direct", "slopes": True},
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
         "delta and omega are both given: give only one of the two": {"omega": 1.1},
         "V is a table: must be one column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
@@ -214,7 +214,7 @@ REFUSED += each(
             PAPER, np.arange(1.0, 10000.0), delta=np.arange(10000.0)
         ),
         "count = 10 | odd": lambda: vr.tables.creep_nodes(PAPER, [0.1, 1.0], count=10),
-        "density needs a Cylinder: a Scene has no wave speed": lambda: PAPER.validity(
+        "density is given for a Scene: leave it out, or use a Cylinder": lambda: PAPER.validity(
             1.0, density=1130.0
         ),
         "within the motion": lambda: PAPER.roll(1.5, 0.5, 3e-3).at(3.1e-3),
@@ -244,7 +244,7 @@ def test_errors_of_input_are_value_errors():
     ("roller", "name"), [(PAPER.replace(alpha=[2.0, 3.0]), "alpha"), (MANY_SCENES, "material")]
 )
 def test_an_error_has_the_name_of_the_argument(roller, name):
-    words = r"^the material \(alpha\) has shape .*: must be a single"
+    words = r"^the material \(alpha or T_epsilon, T_sigma; .*\) has shape .*: must be a single"
     with pytest.raises(vr.ParameterError, match=words) as raised:
         roller.contact(0.5, delta=0.01, method="coupled")
     assert raised.value.name == name

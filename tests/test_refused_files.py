@@ -133,7 +133,7 @@ REFUSED = [
                 netcdf(law_file(), without="material"),
                 of_materials(OF_LAW),
             ],
-            "(it has no attribute viscoroll_table = 'grid'): vr.tables.build": lambda: (
+            "(its attribute viscoroll_table is 'other', that of a grid 'grid')": lambda: (
                 vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc")
             ),
             "given.nc: is a grid or a result, not a material: give a file that": lambda: (

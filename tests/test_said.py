@@ -55,7 +55,7 @@ SAID = {
     "|force + torque/R| = | N/m, the largest rolling moment divided by R (at V = 0. | "
     "m/s)": lambda: vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason,
     "above the friction mu = 0.2": lambda: PAPER.steady(force=0.3, torque=-0.28).reason,
-    "no single steady state: |Q|/load = 0.2 equals mu | lower the loads or raise": lambda: (
+    "no single steady state: |Q|/load = 0.2 equals mu | torque or slope, or raise mu": lambda: (
         PAPER.steady(force=-0.175, torque=0.225).reason
     ),
     "no isolated steady speed: elastic bodies roll without resistance, so every V is "
@@ -86,8 +86,8 @@ WARNED = {
         lambda: vr.WLF(T0=20.0)(293.15),
         lambda: vr.fit_prony(*DMA, temperature=293.15),
     ],
-    "too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a "
-    "tenth of the distance": [
+    "too slow for the law of steady rolling: the computed speed has an error above 10 % on more "
+    "than a tenth of the distance": [
         lambda: DMA_ROLLER.roll(3.0, 3.0, 1.0),
         lambda: UNSURE.ensemble(3.0, 3.0, 1.0),
         lambda: ONE.replace(alpha=[2.0, 11.0]).ensemble(1.0, 1.0, 1.0),
@@ -95,7 +95,7 @@ WARNED = {
     "the cylinder starts in full slip with a creep": [
         lambda: vr.Scene(11.0, 10.0, 0.02, 0.1).roll(0.5, -0.5, 0.001)
     ],
-    "the model does not hold for this contact: speeds exceed the shear wave speed": [
+    "the model does not hold for this contact: |V| or R |omega| exceeds the shear wave speed": [
         lambda: ROLLER.contact([1.0, 99.0], delta=0.0)
     ],
     "as measured | the contact needs the moduli from 0 to 1.9e+03 rad/s": [

@@ -309,7 +309,7 @@ REFUSED = {
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",
     "tables law rubber.toml --alpha 1:2 -o law.nc": "which has a material of its own",
     "tables law --alpha low:high -o law.nc": "'low:high' must be LOW:HIGH",
-    "tables validate file": "file: is not a netCDF-4 file of a law or grid, or is damaged",
+    "tables validate file": "file: is not a netCDF-4 file of a law or grid: give a .nc file",
     "export folder.csv -o all.csv": "all.csv: must be a name that ends in .nc for the results "
     "of a run",
     "export rubber.nc -o rubber.csv": "a name that ends in .nc, .cdf, .h, .json for a law",

@@ -210,7 +210,7 @@ def test_a_cover_rolls_by_its_law_on_disk(tmp_path):
     unlike = CYLINDERS["unlike"]
     cover = vr.Material(3e6, 0.5, vr.Prony([1.5], [1e-2]), 0.2, thickness=5e-3)
     cylinder = unlike.replace(material=cover, base=vr.Material.rigid())
-    with pytest.warns(vr.ModelWarning, match="has the fast law.*the error of Q is"):
+    with pytest.warns(vr.ModelWarning, match="has the law with coupled=False.*the error of Q is"):
         law = vr.tables.law(cylinder.replace(coupled=True))
     vr.tables.save(law, tmp_path / "law.nc")
     path = str(tmp_path / "roller.fmu")

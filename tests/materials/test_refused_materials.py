@@ -130,7 +130,7 @@ REFUSED = [
             "a name in C (letters, digits, _; no digit first": lambda: vr.tables.export(
                 vr.tables.law(11.0), "my-rubber.h"
             ),
-            "no keyword of C or C++, nor vr_...) with .h, as rubber.h": lambda: vr.tables.export(
+            "no keyword of C or C++, nor vr_...), as rubber.h": lambda: vr.tables.export(
                 vr.tables.law(11.0), "double.h"
             ),
             "'V': ..., 'omega': ...": lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1),

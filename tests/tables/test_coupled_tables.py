@@ -165,7 +165,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     assert not grid.steady(torque=vr.Feedback(5.0, V=-0.1)).V.size  # 50 is beyond the grid
     assert abs(grid.contact(0.1, delta=0.0).delta_0) < tol.GRID_MOTION
     refused(lambda: grid.replace(kappa=12.0), "kappa = 12.0: must be 4, the R/l0 of the grid")
-    refused(lambda: grid.validity(0.1), "A roller of materials (not of a grid) with coupled")
+    refused(lambda: grid.validity(0.1), "the law of this roller is the table or grid given")
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
@@ -245,14 +245,14 @@ def test_delta_star_is_half_the_distance_of_the_onsets(scene):
     found = scene.contact(0.1, delta=[-0.03, 0.03], fields=names)
     assert np.array_equal(found.delta_star, 0.5 * (found.delta_plus - found.delta_minus))
     assert abs(found.delta_star - (found.delta_plus - found.delta_0)).max() > 1e-3
-    refused(lambda: scene.contact(0.1, delta=0.0, fields="N"), "half-spaces alone")
+    refused(lambda: scene.contact(0.1, delta=0.0, fields="N"), "the added mass N is not known")
 
 
 def test_many_covers_in_one_call_say_what_their_tables_would_take():
     one = scene_of(BELT)
     covers = one.replace(material=BELT.of_thickness([0.5, 0.6, 0.7]))
     for many, words in (
-        (covers, "material (with a thickness also"),
+        (covers, "material (of a layer also R or load)"),
         (one.replace(mu=[0.2, 0.3]), "mu has several values"),
     ):
         refused(partial(many.contact, 0.1, delta=0.0), words, "coupled=False")

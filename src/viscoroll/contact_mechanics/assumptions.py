@@ -192,13 +192,14 @@ UNKNOWN = Validity(
             "",
             "inertia of the bodies is neglected, which is not checked: give density= to a "
             "Material, or to validity of a Cylinder, to find the shear wave speed",
-            "the quasi-steady assumption for motions is not checked: give the Scene gamma=",
+            "whether a motion changes its speed slowly enough for the law of steady rolling is not "
+            "checked: give the Scene gamma=",
             "the surface speeds of both bodies are not compared: give the angular velocity omega=",
-            "Dundurs' constant, the measure of how shear changes the pressure, is not known, as a "
-            "Scene does not state the materials: use a Cylinder.  It must be near 0, as for equal "
-            "materials, unless pressure and shear are solved together",
+            "Dundurs' constant, the measure of how shear changes the pressure, is not computed for "
+            f"a Scene: use a Cylinder.  Up to {DUNDURS_LIMIT} in magnitude is allowed where "
+            "pressure and shear are not solved together; it is 0 for equal materials",
             "the transit frequency (speed divided by contact length) is not compared with the "
-            "frequencies of the measurements: give the Cylinder a Material with measured=",
+            "frequencies of the measurements: use a Cylinder whose Material has measured=",
             "no thickness is given: the law is that of a half-space.  It applies to a layer too, "
             "with an error of the contact length up to 5 %, if the contact is at most "
             f"{THICK_LIMIT:.2g} times as long as the layer is thick",
@@ -206,11 +207,11 @@ UNKNOWN = Validity(
             "Dundurs' constant in the line 'bodies'",
             "the state must be plane strain (a long cylinder, or one between walls) or plane "
             "stress (a thin disc)",
-            "the strain of the contact is not compared with that of the measurements, as a Scene "
-            "does not state the materials: use a Cylinder",
-            "each body is taken to have one temperature.  Cylinder.temperature gives that of long "
-            "rolling, vr.uniform_temperature tells whether a body has nearly one, and validity("
-            "capacity=) of a motion gives its rise (capacity: heat stored in J/(m K))",
+            "the strain of the contact is not compared with that of the measurements, as it is not "
+            "computed for a Scene: use a Cylinder",
+            "each body is taken to have one temperature.  Cylinder.temperature computes that of "
+            "long rolling, vr.uniform_temperature whether it is nearly the same throughout a body, "
+            "and validity(capacity=) of a motion its rise (capacity: heat stored, J/K per metre)",
         )
     )
 )
@@ -219,8 +220,8 @@ UNKNOWN = Validity(
 UNKNOWN_OF_COVERS = Assumption(
     None,
     None,
-    "the quasi-steady assumption is not checked on a layer of finite thickness, since the check "
-    "needs the added mass N, which is not computed there; N matters only while the speed changes",
+    "whether a motion changes its speed slowly enough for the law of steady rolling is not checked "
+    "on a layer of finite thickness; rolling at constant speed does not need this check",
 )
 
 
@@ -273,7 +274,7 @@ def assess_small_contact(reach: Any) -> Assumption:
         reach <= REACH_LIMIT,
         reach,
         f"the contact reaches {far:.2g} R from the axis; up to {REACH_LIMIT} R is allowed, as the "
-        f"model replaces the circle by a parabola (error here {25.0 * far * far:.2g} %)"
+        f"model replaces the circle by a parabola (error of its height {25.0 * far * far:.2g} %)"
         + "; reduce the load, or take a stiffer material"
         * (far > REACH_LIMIT),
     )
@@ -330,7 +331,7 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
         size,
         f"in full slip the surface speeds of the two bodies differ by {100.0 * most:.4g} % of V; "
         f"up to {100.0 * CREEP_LIMIT:g} % is allowed, since the rolling moment is computed with "
-        "the speed of the axis"
+        "V for both"
         if most > 0.0
         else (
             "the surface speeds of both bodies are nearly equal, since the contact is in partial "
@@ -389,7 +390,8 @@ def assess_coupling(long: float, instant: float, *, like: bool, solved: bool) ->
     sentence += (
         f"up to {DUNDURS_LIMIT} in magnitude is allowed, as pressure caused by shear is neglected"
     )
-    return Assumption(abs(worst) <= DUNDURS_LIMIT, worst, sentence)
+    allowed = abs(worst) <= DUNDURS_LIMIT
+    return Assumption(allowed, worst, sentence + " with coupled=False" * (not allowed))
 
 
 def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Assumption:
@@ -419,7 +421,8 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
             data.misfit > MISFIT_LIMIT
         )
     if (known := error[np.isfinite(error)]).size:
-        sentence += f"; at frequencies inside M is accurate to +-{100.0 * known.max():.3g} %"
+        sentence += "; at the measured frequencies the rolling moment M is accurate to "
+        sentence += f"+-{100.0 * known.max():.3g} %"
     return Assumption(holds, frequency, sentence)
 
 

@@ -71,14 +71,17 @@ def assess_strain(data: Any, V: Any, length: Any) -> Assumption:
         return Assumption(
             None,
             value,
-            f"{sentence}; that of the measurements is not known: give strain= in vr.Measured",
+            f"{sentence} (amplitude of shear strain); that of the measurements is not known: give "
+            "vr.Measured(..., strain=) to the material",
         )
     holds = True
     for name, strain in known.items():
         own = strains[name] / strain
         holds = holds & (own <= STRAIN_RATIO) & ((own >= 1.0 / STRAIN_RATIO) | (V == 0.0))
         sentence += f"; {name} was measured at {100.0 * strain:.2g} %"
-    return Assumption(holds, value, f"{sentence}; a third to three times that strain is allowed")
+    return Assumption(
+        holds, value, f"{sentence}; a third to three times the measured strain is allowed"
+    )
 
 
 def _strains(data: Any, V: Any, length: Any) -> dict[str, Any]:

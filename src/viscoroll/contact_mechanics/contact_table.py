@@ -134,22 +134,29 @@ def field_names(
         names += tuple(name for name in more if name not in names)
     added = ("delta_0",) * cover
     if method == "coupled":
-        allowed = "left out: method 'coupled' computes no derivatives and no added mass N"
+        allowed = (
+            "left out, and slopes=True too: method 'coupled' computes no slopes and no added mass N"
+        )
         refuse_fields(names, (*_ALL_SLOPES, UNSTEADY), allowed)
         added = (*OF_BODIES, *ONSETS, *OF_COUPLED[:-1])
     else:
         refuse_fields(names, OF_COUPLED, "left out, or computed with method='coupled'")
         if method == "direct":
             if not set(_ALL_SLOPES).isdisjoint(names):
-                allowed = "'table' for derivatives, which method 'direct' does not compute"
+                allowed = (
+                    "'table' if slopes=True or fields= asks for derivatives, as dQ_dV, which "
+                    "method 'direct' does not compute"
+                )
                 raise ParameterError("method", "'direct'", allowed)
             only_table = (UNSTEADY, "grip", "delta_0", *ONSETS)
             refuse_fields(only_table, names, "left out, or computed with method='table'")
         if cover:
-            allowed = (
-                "left out: the added mass N is computed for half-spaces alone (if their Dundurs' "
-                "constant is above 0.05, give the roller coupled=False)"
-            )
+            allowed = "left out: the added mass N is not known for a layer of finite thickness"
+            if scene.cover is None:
+                allowed = (
+                    "left out: the added mass N is not known where pressure and shear are solved "
+                    "together, nor of a grid; a roller of half-spaces with coupled=False has N"
+                )
             refuse_fields((UNSTEADY,), names, allowed)
     if fields is not None:
         return names
@@ -236,6 +243,8 @@ _BLOCK_OF_MATERIALS = 1 << 8
 _ALPHAS_TOGETHER = 4
 #: Order of states as they are.
 _NO_ORDER = np.empty(0, np.int64)
+#: Name of kappa |V| in messages, where the roller may be a cylinder.
+_SPEED = "|V| T_ref/l0 (of a Scene: kappa |V|)"
 #: Largest kappa |V|: beyond it zeta underflows.
 FASTEST = 1e300
 #: Largest kappa |V| for Q by the printed Eq. (15), in which the rounding error of a bracket grows
@@ -303,14 +312,18 @@ def evaluate_contact(
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
-        allowed = "left out for many materials in one call: make a call for each material"
+        allowed = "left out where the call has several materials: make a call for each material"
         refuse_fields(names, (UNSTEADY,), allowed)
         # the index of the material stands in the place of alpha
         arrays["alpha"] = np.arange(len(material), dtype=float)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
         if material.gridded:
-            refuse_fields(NOT_IN_GRIDS, names, "left out: a grid contains only Q and M")
+            allowed = (
+                "left out: the law of this roller is a grid, and a grid contains only Q and M (so "
+                "that stresses cannot be computed from it either)"
+            )
+            refuse_fields(NOT_IN_GRIDS, names, allowed)
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
     rows = evaluate_law(
@@ -401,8 +414,8 @@ def evaluate_law(
 
             if direct_loop(alpha, request, stop - start):
                 raise ConvergenceError(
-                    f"contact: method='direct' did not converge for one of the states {start} to "
-                    f"{stop - 1}, counted from 0: use method='table'"
+                    "contact: method='direct' found no solution at one of the elements "
+                    f"[{start}:{stop}] of the flattened result: use method='table'"
                 )
         elif names != (UNSTEADY,):
             contact_loop(laws, request, scratch, stop - start)
@@ -514,7 +527,7 @@ def refuse_beyond(law: LawTable, u: Any) -> None:
     most = law.coupled.fastest if law.coupled is not None else np.inf
     largest = float(np.max(u, initial=0.0))
     if largest > most * (1.0 + 1e-12):
-        raise OutOfTableError("the speed kappa |V| (V in units of R/T_ref)", largest, 0.0, most)
+        raise OutOfTableError(_SPEED, largest, 0.0, most)
 
 
 def refuse_overflow(kappa: Any, V: Floats, fastest: float = FASTEST) -> None:
@@ -536,5 +549,9 @@ def refuse_overflow(kappa: Any, V: Floats, fastest: float = FASTEST) -> None:
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max()
     if largest > fastest:
-        allowed = f"at most {fastest:g}: reduce V"
-        raise ParameterError("the speed kappa |V| (V in units of R/T_ref)", f"{largest:g}", allowed)
+        allowed = f"at most {fastest:g}" + (
+            " for Q by method 'direct': use method='table'"
+            if fastest == _FASTEST_DIRECT
+            else ": reduce V"
+        )
+        raise ParameterError(_SPEED, f"{largest:g}", allowed)

@@ -338,11 +338,13 @@ def pair_of_scene(scene: Any) -> CoupledPair:
     """
     material = scene.material
     if scene.gridded:
-        raise described_error("material", "is a grid of Q and M", "a Prony, Bodies or Cover")
+        allowed = "a Prony, Bodies or Cover with method='coupled', not a grid"
+        raise described_error("material", "is a grid of Q and M", allowed)
     if np.size(scene.alpha) != 1 or scene.material_array is not None:
         shape = np.shape(scene.alpha)
         allowed = "a single material with method='coupled': make a call for each"
-        sentence = f"the material (alpha) has shape {shape}: must be {allowed}"
+        given = "the material (alpha or T_epsilon, T_sigma; of a layer also R, load)"
+        sentence = f"{given} has shape {shape}: must be {allowed}"
         name = "alpha" if material is None else "material"
         raise ParameterError(name, shape, allowed, sentence)
     if material is None:
@@ -566,7 +568,8 @@ class CoupledRow:
         for code, creep in zip(np.asarray(status, int), creeps, strict=True):
             if code:
                 raise ConvergenceError(
-                    f"contact by method 'coupled': {_REASONS[code]} at kappa |V| = "
-                    f"{self.u:g} (V in units of R/T_ref), mu = {self.mu:g}, 2 kappa delta = "
-                    f"{creep:g}; please report this defect of viscoroll"
+                    "contact with pressure and shear solved together (method 'coupled'): "
+                    f"{_REASONS[code]} at |V| T_ref/l0 = {self.u:g}, mu = {self.mu:g}, "
+                    f"2 delta R/l0 = {creep:g} (infinite: full slip; delta: creepage, l0: contact "
+                    "length at rest); please report this defect of viscoroll"
                 )

@@ -111,11 +111,10 @@ def tabulate(
     """
     count, across = (None, NODES) if nodes is None else nodes
     if count is not None:
-        check_integer("nodes of speed", count, 4, 1000)
-    if check_integer("nodes of creepage", across, 9, 1001) % 2 == 0:
-        raise ParameterError(
-            "nodes of creepage", across, "an odd number, as the nodes are symmetric about 0"
-        )
+        check_integer("nodes[0] (number of speeds)", count, 4, 1000)
+    name = "nodes[1] (number of creepages)"
+    if check_integer(name, across, 9, 1001) % 2 == 0:
+        raise ParameterError(name, across, "odd, as one creepage lies in the middle")
     u = speed_nodes(pair, count)
     half = across // 2
     t = np.arange(-half, half + 1) / half  # 0 exactly in the middle
@@ -135,9 +134,9 @@ def tabulate(
         edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
 
     # two passes: the states of a row need its middle creepage, which is smoothed over all rows
-    run_blocks(begin, solved, 1, progress="coupled table: kernels" if progress else None)
+    run_blocks(begin, solved, 1, progress="coupled solution, 1 of 2" if progress else None)
     edges[:solved, 0] = _without_outliers(edges[:solved, :3])
-    run_blocks(solve, solved, 1, progress="coupled table: states" if progress else None)
+    run_blocks(solve, solved, 1, progress="coupled solution, 2 of 2" if progress else None)
     edges[solved:] = edges[0]
     fields[solved:] = fields[0]
     made = CoupledRows(mu, *map(lock_array, (u, t, edges, fields)))
@@ -334,7 +333,7 @@ def refuse_several_tables(scene: Any) -> None:
     """
     several = len(scene.material) if scene.material_array is not None else 1
     if scene.tabulated and scene._law is None and several * np.unique(scene.mu).size != 1:
-        name = "material (with a thickness also R and load)" if several > 1 else "mu"
+        name = "material (of a layer also R or load)" if several > 1 else "mu"
         raise several_tables_error(name, "one value")
 
 

@@ -292,7 +292,8 @@ class FreeRolling:
         scene = scene.uncoupled  # a free roller has hardly any traction
         refuse_cover(
             scene,
-            "this call cannot be made, as it needs the added mass N, which is not known",
+            "it cannot be checked whether speeds change slowly enough for the law of steady "
+            "rolling, as the check needs the added mass N, which is not known",
         )
         materials: Any
         unit: Any

@@ -99,7 +99,8 @@ class Steadiness(Assumption):
         array([ True,  True])
         """
         if free.u.size and not free.u.any():
-            return Assumption(None, None, "the assumption is not checked at V = 0: give a speed")
+            sentence = "the error of motions by the law of steady rolling is not estimated at V = 0"
+            return Assumption(None, None, f"{sentence}: give another V")
         return cls._create(free.unsteadiness, free)
 
     @classmethod
@@ -272,15 +273,16 @@ def _describe_free(free: FreeRolling) -> str:
     text += f"up to {STEADY_LIMIT} is allowed: "
     if value > STEADY_LIMIT:
         return text + (
-            "too slow for the quasi-steady assumption of a motion (contact states and steady "
-            "rolling are valid, its stability is not); the error of a computed V is below 10 % "
-            f"above {most.speed:.2g}{speed}"
+            "V is too slow for a motion by the law of steady rolling (contact states and the "
+            "speeds of steady are valid, whether these are stable is not); the error of a computed "
+            f"V is below 10 % above {most.speed:.2g}{speed}"
         )
     if not np.isfinite(whole):
         return text + "an elastic cylinder never stops"
     fine = free.reach(0.1 * STEADY_LIMIT)
     start = free.start()
-    text += f"left to coast it rolls {whole:.4g}{length}; the error of its computed V is below "
+    text += f"left to coast the cylinder rolls {whole:.4g}{length}; "
+    text += "the error of its computed V is below "
     if fine.time:  # 0 where the error is above 1 % at the start already
         text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % until rest"
     if fine.speed:
@@ -314,7 +316,9 @@ def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
     if most <= STEADY_LIMIT:
         return text + "throughout"
     speed = f"{free.reach(STEADY_LIMIT).speed:.2g}{free.units[0]}"
-    below = "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is rolled below it"
+    below = (
+        "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is rolled more slowly"
+    )
     return f"{text}down to {speed}{below}"
 
 
@@ -372,12 +376,16 @@ def assess_cover(scene: Parameters, lam: Any) -> Assumption:
     ]
     holds = np.all([half / h <= limit for limit, h in layers], axis=0)
     theta = half / cover.thinnest
+    allowed = (
+        "any ratio is allowed, as pressure and shear are solved together"
+        if scene.tabulated
+        else f"up to {min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
+        "coupled=False, whose law has stick in front and slip behind"
+    )
     sentence = (
-        f"half the contact length is up to {largest(theta):.2g} times the thickness of the layer, "
-        f"which is {np.min(cover.thinnest):.3g} times the contact length at rest of half-spaces in "
-        f"its place.  Up to {min(np.min(limit) for limit, _ in layers):.3g} times is allowed with "
-        "coupled=False, whose law has stick in front and slip behind; without coupled=False "
-        "pressure and shear are solved together, which has no such limit"
+        f"half the contact length is up to {largest(theta):.2g} times the thickness of the layer; "
+        f"{allowed} (the thickness is {np.min(cover.thinnest):.3g} l0, l0: contact length at rest "
+        "of half-spaces of the same materials)"
     )
     return Assumption(holds | scene.tabulated, theta, sentence)
 
@@ -419,19 +427,23 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     levers = np.abs(free) + 0.5 * star * effect
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     most = largest(value)
-    beyond = (
-        f" if traction.value is at most 1; here it is up to {most:.2g}: the contact slips at both "
-        "ends, and the law does not hold: use method='coupled'"
-    )
     errors = (
         f"the error of Q is up to {100.0 * largest(error):.2g} % of mu P and that of "
-        f"M up to {largest(error_of_M):.1g} P l0" + beyond * (most > 1.0)
+        f"M up to {largest(error_of_M):.1g} P l0"
     )
-    sentence = f"the effect of shear on pressure is approximate: against method='coupled' {errors}"
+    if most > 1.0:
+        errors += (
+            f", and more where traction.value is above 1 (here up to {most:.2g}): there the "
+            "contact slips at both ends, and this law does not hold"
+        )
+    sentence = (
+        f"the effect of shear on the pressure is approximate (as with coupled=False): {errors}; "
+        "contact(method='coupled') solves both together"
+    )
     if scene.tabulated:
         sentence = (
-            "shear changes the pressure: states with traction are from a table of both solved "
-            f"together; with coupled=False {errors}"
+            "pressure and shear are solved together, so that the effect of shear on the pressure "
+            f"is no error; with coupled=False {errors}"
         )
     return Assumption((value <= 1.0) | scene.tabulated, value, sentence)
 
@@ -527,6 +539,9 @@ def validity(
         return roller.body_data.extend_validity(report, lam, V, omega=omega, density=density)
     if density is not None:
         raise ParameterError(
-            "density", density, "None", "density needs a Cylinder: a Scene has no wave speed"
+            "density",
+            density,
+            "None",
+            "density is given for a Scene: leave it out, or use a Cylinder",
         )
     return report

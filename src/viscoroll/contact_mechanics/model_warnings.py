@@ -58,10 +58,13 @@ _LEAST_FAST_ROLLING = 1.0
 _SLOW = 0.6 / 16.0 / STEADY_LIMIT
 #: Fault of a motion or contact, where a density is known; M is doubtful from :data:`WAVE_LIMIT` on
 #: already.
-_FASTER_THAN_WAVES = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
+_FASTER_THAN_WAVES = (
+    "|V| or R |omega| exceeds the shear wave speed sqrt(G/density) of a body (up to "
+    f"{WAVE_LIMIT:g} times that speed is allowed)"
+)
 #: Fault of a motion or contact whose lengths were given in mm.
 _MILLIMETRES = (
-    "R is at least 5 m, or a layer is thicker than 0.5 m, and the contact of this load is much "
+    "R is at least 5 m, or a layer is at least 0.5 m thick, and the contact of this load is much "
     "shorter: lengths must be in m; if they are in mm, divide them by 1000"
 )
 #: Fault of a motion or contact on a cover whose peak pressure exceeds the modulus.
@@ -69,6 +72,8 @@ _SOFT = (
     "the peak pressure on the layer exceeds its modulus E/(1 - nu^2): strains are not small "
     "(are moduli in Pa, the load in N/m and lengths in m?)"
 )
+#: Calls that report the assumptions of a motion.
+_REPORTS = "validity(V) of the roller, or validity() of the result,"
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256
 #: Data of materials for which this process has warned already.
@@ -135,7 +140,7 @@ def warn_of_contact(
             + _absurd_sizes(data)
             + [_FASTER_THAN_WAVES] * too_fast,
             "contact",
-            "validity(V)",
+            "validity(V) of the roller",
         )
     if data.measured_speeds is not None and is_outside(of_band, data.measured_speeds):
         _warn_of_band(data, reduced)
@@ -198,8 +203,8 @@ def warn_of_unmeasured_starts(share: float, records: Collection[Measured]) -> bo
         return False
     _warned_records.update(records)
     warn_of_model(
-        f"the rolling moment M is extrapolated: {share:.1%} of the motions start outside the "
-        "frequencies at which the material was measured "
+        f"the rolling moment M is extrapolated: {share:.1%} of the motions start at a V that needs "
+        "moduli at frequencies at which the material was not measured "
         f"(at the medians of the inputs {'; '.join(map(str, records))})"
     )
     return True
@@ -245,7 +250,7 @@ def warn_of_start(
     if data is not None and data.wave_speed is not None:
         V, omega = (0.0 if speed is None else np.abs(speed) for speed in start)
         if np.max(np.maximum(V, omega * data.R), initial=0.0) > data.wave_speed:
-            _warn_of_faults([_FASTER_THAN_WAVES], "motion", "validity() of cylinder or result")
+            _warn_of_faults([_FASTER_THAN_WAVES], "motion", _REPORTS)
     numbers = [*_numbers_of(scene), V0, omega0]
     if type(V0) is type(omega0) is float and not scene.shape:
         faults = _start_faults(scene.material, driven, *numbers)
@@ -253,7 +258,7 @@ def warn_of_start(
         faults = _worst_start_faults(scene, numbers, driven)
     if data is not None:
         faults += _absurd_sizes(data)
-    _warn_of_faults(faults, "motion", "validity() of roller or result")
+    _warn_of_faults(faults, "motion", _REPORTS)
 
 
 def _start_faults(
@@ -289,8 +294,9 @@ def _start_faults(
         fastest = max(abs(V0), abs(omega0))
         if fastest > 0.0 and (material is not None or part * fastest > _LEAST_M_OVER_MU * mu):
             faults.append(
-                "the cylinder starts in full slip with a creepage of 1 or more: until partial slip "
-                "its rolling moment is uncertain, as it is computed with V for both surfaces"
+                "the cylinder starts in full slip with a creepage (omega R - V)/V of 1 or more in "
+                "magnitude: until it is in partial slip its rolling moment is uncertain, as it is "
+                "computed with V for both surfaces"
             )
     # the speed at the start, or that at which it begins to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
@@ -301,9 +307,9 @@ def _start_faults(
         and _is_too_slow(material, alpha, u, gamma, j)
     ):
         faults.append(
-            "the cylinder is too slow for the quasi-steady assumption: the error of V exceeds 10 % "
-            "on more than a tenth of the distance to rest (unsteady=True reduces the error; it "
-            "needs half-spaces of one material)"
+            "the cylinder is too slow for the law of steady rolling: the computed speed has an "
+            "error above 10 % on more than a tenth of the distance to rest (unsteady=True reduces "
+            "the error; it needs half-spaces of one material)"
         )
     return faults
 

@@ -467,7 +467,7 @@ def refuse_other_friction(law: LawTable, mu: Any) -> None:
     """
     table = law.coupled
     if table is not None and np.abs(np.asarray(mu) / table.mu - 1.0).max(initial=0.0) > _SAME_MU:
-        allowed = f"{table.mu!r}, for which the table was computed"
+        allowed = f"{table.mu!r}, the mu of the table that is given as material="
         raise ParameterError("mu", format_value(mu), allowed)
 
 
@@ -509,8 +509,9 @@ def resolve_model(
     scene = roller.scene()
     if moves and scene.gamma is None:
         sentence = (
-            f"{call} needs the scene's gamma = P T_epsilon^2/(m R), the ratio of load to inertia, "
-            "but gamma is not given: give Scene(..., gamma=), or gamma in [scene] of a file"
+            f"{call} needs the scene's gamma = P T^2/(m R) (P, m: load and mass per metre; T: "
+            "T_epsilon, or the unit of time of the material), but gamma is not given: give "
+            "Scene(..., gamma=), or gamma in the section [scene] of a file"
         )
         raise ParameterError("gamma", None, "a number > 0", sentence)
     return roller, scene, roller.scale
@@ -525,13 +526,17 @@ def refuse_cover(scene: Parameters, why: str) -> None:
         sentence = f"thickness is given: for a layer of finite thickness {why}"
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
     if scene.tabulated:
+        law, instead = (
+            ("a table of pressure and shear solved together", "")
+            if scene._law is None
+            else ("the table or grid given as material=", " and materials in place of that table")
+        )
         raise ParameterError(
             "coupled",
             True,
             "False",
-            f"the law is a table over speed and creepage: {why}.  A roller of materials (not of a "
-            "grid) with coupled=False has no such table; it neglects how shear changes the "
-            "pressure",
+            f"the law of this roller is {law}: {why}.  It is possible with coupled=False{instead}, "
+            "which neglects how shear changes the pressure",
         )
 
 
@@ -544,7 +549,7 @@ def refuse_arrays(
     roller: Roller,
     scene: Parameters,
     names: Iterable[str],
-    allowed: str = "a single number",
+    allowed: str = "a single number in one call: make a call for each",
     slope: Any = None,
 ) -> None:
     """Raise ParameterError for the first of some parameters that is an array, also of shape (1,).
@@ -579,5 +584,7 @@ def _refuse_ratio(mu: Floats, kappa: Floats) -> None:
     wrong = ratio[~((low <= ratio) & (ratio <= high))]
     if wrong.size:
         raise ParameterError(
-            "mu/kappa (kappa = R/l0)", f"{wrong.flat[0]}", f"in [{low:g}, {high:g}]"
+            "mu/kappa (kappa = R/l0, l0: contact length at rest)",
+            f"{wrong.flat[0]}",
+            f"in [{low:g}, {high:g}]",
         )

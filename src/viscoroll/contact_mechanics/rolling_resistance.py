@@ -181,8 +181,8 @@ def branches(law: LawTable, gain: float) -> Branches:
     if gain and not low <= abs(gain) <= high:
         # in units that are 1 in a scene
         raise described_error(
-            "gain on V",
-            f"is {gain:g} times load T_ref/R",
+            "the gain V= of a Feedback (that of force plus that of torque divided by R)",
+            f"is {gain:g} times load T_ref/R (T_ref: unit of time)",
             f"0, or in magnitude {low:g} to {high:g} times load T_ref/R",
         )
     nodes = speed_nodes(law)

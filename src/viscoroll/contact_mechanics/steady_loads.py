@@ -335,9 +335,10 @@ def _rounding(law: LawTable, loads: Loads) -> Floats:
 def _cancelling_error(of_force: float, of_torque: float) -> ParameterError:
     """Return the error of dimensionless gains on omega, of force and torque, that nearly cancel."""
     return described_error(
-        "gains on omega of force and torque",
-        f"are {of_force:g} and {of_torque:g}, which nearly cancel",
-        "numbers whose sum is farther from 0, else the traction is undetermined",
+        "the gains omega= of the Feedback of force and of torque",
+        f"are {of_force:g} times load T_ref and {of_torque:g} times load R T_ref (T_ref: unit of "
+        "time), which nearly cancel",
+        "such that the sum of both numbers is farther from 0, else the creep force is undetermined",
     )
 
 

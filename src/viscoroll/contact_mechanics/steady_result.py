@@ -132,11 +132,12 @@ class Diagnosis(NamedTuple):
             if abs(Q) == mu:
                 return (
                     f"no single steady state: |Q|/load = {mu:.6g} equals mu, so that {at} every "
-                    "omega beyond a limit is steady, in full slip; lower the loads or raise mu"
+                    "omega beyond a limit is steady, in full slip (Q: creep force); lower force, "
+                    "torque or slope, or raise mu"
                 )
             return (
-                f"steady rolling {at} needs |Q|/load = {abs(Q):.6g}, above the friction mu = "
-                f"{mu:.6g}: lower the loads"
+                f"steady rolling {at} needs a creep force Q with |Q|/load = {abs(Q):.6g}, above "
+                f"the friction mu = {mu:.6g}: lower force, torque or slope"
             )
         if self.elastic:
             if total == 0.0:
@@ -145,18 +146,19 @@ class Diagnosis(NamedTuple):
                     "every V is steady"
                 )
             return (
-                f"{name} = {total:.6g}{of_load} is not 0, but elastic bodies roll without "
-                "resistance: no speed is steady"
+                f"{name} = {total:.6g}{of_load} (a slope counts as force) is not 0, but elastic "
+                "bodies roll without resistance: no speed is steady"
             )
         if self.maximum is None:
             return (
-                f"the {moment} equals {name} at no speed that was searched ({name} at rest: "
-                f"{total:.6g}{of_load})"
+                f"the {moment} equals {name} at no speed that was searched ({name} at V = omega = "
+                f"0: {total:.6g}{of_load}; a slope counts as force)"
             )
         M, V = np.divide(self.maximum, loads.kappa[n])
         return (
             f"no steady speed: |{name}| = {abs(total):.6g}{of_load} exceeds "
-            f"{M * load:.6g}{of_load}, the largest {moment} (at V = {V * speed:.6g}{of_speed})"
+            f"{M * load:.6g}{of_load}, the largest {moment} (at V = {V * speed:.6g}{of_speed}): "
+            "lower force, torque or slope, which counts as force"
         )
 
 

@@ -98,7 +98,10 @@ def evaluate_coupled(
     """
     pair = pair_of_scene(scene)
     if "depth" in names and any(math.isinf(body.thickness) for body in pair):
-        allowed = "left out: the indentation of a half-space by a line load is infinite"
+        allowed = (
+            "left out: the indentation of a half-space by a line load is infinite (it is finite if "
+            "each body is rigid or has a thickness)"
+        )
         raise ParameterError("fields", "'depth'", allowed)
     shape, states = _broadcast_states(scene, V, creep, creep_is_omega)
     # states of one kappa |V| and mu share the onsets of full slip, which are solved once

@@ -184,7 +184,8 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
         raise ParameterError(
             "what",
             describe_value(what),
-            "a Scene, a Cylinder, or the law of half-spaces (that of a layer needs its Cylinder)",
+            "a Scene, a Cylinder, or the law of half-spaces (in place of the law of a layer give "
+            "its Cylinder, in place of the law of every alpha a Scene)",
         )
     if shape := what.scene().shape:
         raise described_error(
@@ -392,7 +393,7 @@ def build(
         for name, given in {"V": V, "delta": delta, "alpha": alpha}.items():
             if given is not None:
                 raise described_error(
-                    name, "is given", "left out, as the method 'coupled' chooses its own nodes"
+                    name, "is given", "left out: method 'coupled' chooses speeds and creepages"
                 )
         roller = roller_of(what, None)
         law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
@@ -400,11 +401,9 @@ def build(
             # so that the file states its unit of time in s, and the bodies in SI units
             law = dataclasses.replace(law, T_ref=roller.T_ref, pair=roller.pair)
         return law_as_dataset(law, {})
-    for name, given in {"V": V, "delta": delta}.items():
+    for name, given, maker in (("V", V, "spread"), ("delta", delta, "creep_nodes")):
         if given is None:
-            raise ParameterError(
-                name, None, "a list of values, as vr.tables.spread or creep_nodes makes it"
-            )
+            raise ParameterError(name, None, f"a list of values, as vr.tables.{maker} makes it")
     what = roller_of(what, alpha)
     si = isinstance(what, Cylinder)
     axes = {
@@ -416,8 +415,8 @@ def build(
     if (size := math.prod(axis.size for axis in axes.values())) > MAX_NODES:
         raise described_error(
             "the grid",
-            f"has {size:.7g} nodes",
-            f"one of at most {MAX_NODES:g} (all values of {' times all of '.join(axes)})",
+            f"has {size:.7g} points, all combinations of {', '.join(axes)}",
+            f"one of at most {MAX_NODES:g} points: give fewer values",
         )
     plane = tuple(name for name in axes if name != "delta")
     data = {
@@ -429,7 +428,7 @@ def build(
         "in SI units, per m of length" if si else "dimensionless"
     )
     grid = ", ".join(
-        f"{axis.size} values of {name} in [{axis[0]:g}, {axis[-1]:g}]"
+        f"{axis.size} value{'s' * (axis.size > 1)} of {name} in [{axis[0]:g}, {axis[-1]:g}]"
         for name, axis in axes.items()
     )
     table = xr.Dataset(

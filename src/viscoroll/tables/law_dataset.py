@@ -149,8 +149,9 @@ def law(
             speeds = material.l0 / material.T_ref * np.logspace(-3.0, 3.0, 61)
             report = material.replace(coupled=False).validity(speeds)
             warn_of_model(
-                "the table has the fast law (coupled=False), not the coupled solution that contact "
-                "takes: " + (report.traction if covered else report.bodies).sentence
+                "the table has the law with coupled=False, while contact solves pressure and shear "
+                "together (vr.tables.build(cylinder, method='coupled') makes a table of that): "
+                + (report.traction if covered else report.bodies).sentence
             )
     else:
         table = law_table_of(material, base)
@@ -329,8 +330,8 @@ _MOST_POINTS = {COUPLED: COUPLED_POINTS, COVER: 400}
 _REFERENCES = {
     LAW: "random speeds, compared with the exact formulas",
     AXIS: "random speeds and alphas, compared with the exact formulas",
-    COVER: "random speeds, compared with solutions of more terms",
-    COUPLED: "random states, compared with the coupled solution there",
+    COVER: "random speeds, compared with solutions with more terms of the pressure",
+    COUPLED: "random speeds and creepages, compared with the coupled solution there",
 }
 #: Rounding error of a value, added to the stated error.
 ROUNDING = 2e-15

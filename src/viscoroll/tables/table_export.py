@@ -238,8 +238,8 @@ def _write_header(dataset: Dataset, path: Path) -> None:
         raise ParameterError(
             "path",
             path,
-            "a name in C (letters, digits, _; no digit first; no keyword of C or C++, nor vr_...) "
-            "with .h, as rubber.h",
+            "a file name that without .h is a name in C (letters, digits, _; no digit first; no "
+            "keyword of C or C++, nor vr_...), as rubber.h",
         )
     table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
     coupled = table.coupled is not None

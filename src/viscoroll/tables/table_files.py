@@ -31,10 +31,11 @@ from ..core import (
     check_names,
     describe_value,
     read_sealed,
+    unit_of,
     write_dataset,
 )
 from ..laws import check_nodes, friction_limit, increases, pack_spline, refuse_filled
-from ..materials import KIND, checked_netcdf
+from ..materials import COUPLED, KIND, checked_netcdf
 
 # --- The schema of the file of a grid ---
 
@@ -105,8 +106,8 @@ def _fault_of(table: Any, path: Any) -> str:
     """
     if not hasattr(table, "attrs"):
         return (
-            f"is {describe_value(table)}, but must be a dataset of vr.tables.build or of "
-            "vr.tables.load(file)"
+            f"is {describe_value(table)}, but must be a dataset, as vr.tables.build and "
+            "vr.tables.load(file) return it"
         )
     about = table.attrs
     if is_law(table):
@@ -114,17 +115,19 @@ def _fault_of(table: Any, path: Any) -> str:
             "is a law, not a grid: give vr.load_law(file) as material= of a Scene or Cylinder, and "
             "call the method contact of this roller"
         )
-    if str(about.get(KIND)) != GRID:
+    if str(kind := about.get(KIND)) != GRID:
         return (
-            f"is not a table of viscoroll (it has no attribute {KIND} = {GRID!r}): vr.tables.build "
-            "makes a grid, vr.tables.law a law, and vr.tables.save writes either"
+            f"is not a table of viscoroll (its attribute {KIND} is {kind!r:.40}, that of a grid "
+            f"{GRID!r}): give a dataset of vr.tables.build, or for a law of vr.tables.law, or a "
+            "file that vr.tables.save wrote"
         )
     version = str(about.get("schema_version"))
     major = SCHEMA_VERSION.partition(".")[0]
     if version.partition(".")[0] != major:
         return (
             f"has schema_version = {version:.20}, but viscoroll {__version__} reads {major}.x; "
-            f"{_REBUILD}, or use the version that wrote it"
+            "make the grid again by vr.tables.build or `viscoroll tables build`, or use the "
+            "version of viscoroll that wrote it"
         )
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
@@ -137,7 +140,10 @@ def _fault_of(table: Any, path: Any) -> str:
         dims = table[name].dims
         own = (name,) if name in axes else tuple(dim for dim in axes if dim in dims)
         if dims != own:
-            return f"variable {name!r} has the dimensions {dims}: must be {own}"
+            return (
+                f"variable {name!r} has the dimensions {dims}, but must have {own} in this order: "
+                "restore them by .transpose(), or make the grid again by vr.tables.build"
+            )
         unit = table[name].attrs.get("units")
         # a grid of a cylinder, in SI units, states its load; that of a scene has none
         written = attributes(name, "load" in about)["units"]
@@ -150,8 +156,13 @@ def _fault_of(table: Any, path: Any) -> str:
         if values.dtype != np.float64:
             return f"variable {name!r} is of type {values.dtype}: convert it by .astype(float)"
         refuse_filled(table[name], path)
-        if name in axes and not (values.size and increases(values)):
-            return f"coordinate {name!r} must increase strictly: sort it by .sortby({name!r})"
+        if name in axes and not values.size:
+            return f"coordinate {name!r} has no values: keep one at least"
+        if name in axes and not increases(values):
+            return (
+                f"coordinate {name!r} does not increase strictly: sort it by .sortby({name!r}), "
+                f"and leave out equal values by .drop_duplicates({name!r})"
+            )
     return ""
 
 
@@ -260,8 +271,10 @@ def load(path: str | PathLike[str]) -> Dataset:
     except Exception as error:  # libraries raise errors of many kinds
         raise FileError(
             path,
-            "is not a netCDF-4 file of a law or grid, or is damaged: give such a file, or "
-            f"{_REBUILD}",
+            f"is damaged, or is HDF5 but not netCDF-4: {_REBUILD}"
+            if content.startswith(b"\x89HDF")
+            else "is not a netCDF-4 file of a law or grid: give a .nc file of vr.tables.save or "
+            "`viscoroll tables` (a .cdf file is netCDF-3, for other programs)",
         ) from error
     table.attrs = {  # xarray decodes as ASCII what another program has not declared UTF-8
         name: text.encode(errors="surrogateescape").decode(errors="replace")
@@ -308,13 +321,16 @@ def info(path: str | PathLike[str]) -> str:
     lines = [f"{path}: {about[KIND]}, {size:.0f} kB", about.get("title", "no title"), ""]
     if is_law(table):
         stated = checked_netcdf.stated_errors(table)
-        lines += [f"  {'function':<18}largest error"]
-        lines += [f"  {name:<18}{error:.1e}" for name, error in stated.items()]
+        error = "absolute error" if about[KIND] == COUPLED else "relative error"
+        lines += [f"  {'function':<18}largest {error}"]
+        lines += [f"  {name:<18}{each:.1e}" for name, each in stated.items()]
     else:
         for name in axes_of(table):
             nodes = table[name].values
-            lines.append(f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]")
-        lines += ["", f"  {'field':<26}{'axes':<18}error between the nodes"]
+            word = f"node{'s' * (nodes.size > 1)} in [{nodes[0]:g}, {nodes[-1]:g}]"
+            unit = unit_of(table[name].attrs) or "dimensionless"
+            lines.append(f"  {name:<8} {nodes.size:>5} {word}, {unit}")
+        lines += ["", f"  {'field':<26}{'axes':<18}absolute error between the nodes"]
         for name in fields_of(table):
             field = table[name]
             errors = ", ".join(
