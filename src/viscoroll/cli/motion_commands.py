@@ -413,12 +413,13 @@ def ensemble(arguments: Namespace) -> None:
 def verify(arguments: Namespace) -> int:
     """Check every file of a results store against its checksum (SHA-256).
 
-    The exit code is 1 if a file differs or is missing, or the run is unfinished; if records/start differs or is missing, it is 2.
+    The exit code is 1 if a file differs or is missing, or the run is unfinished.
+    It is 2 if the file records/start is missing or damaged.
 
     arguments: parsed command line with store, path of the folder of the results.
     Returns that code, True for 1, also for a run that is not finished.
     Raises FileError for a folder that is no store, or where the record of its start is damaged.
-    """  # noqa: E501
+    """
     verdict = vr.runs.verify(arguments.store)
     print(f"{arguments.store}: {verdict}")
     return not verdict.ok  # True is exit code 1
@@ -440,7 +441,8 @@ def sensitivity(arguments: Namespace) -> None:
     """Compute Sobol indices of the uncertain inputs of a run file.
 
     The table has first-order (S1) and total (ST) indices of the summarised quantities, with the half-width of the
-    95 % confidence interval (S1_conf, ST_conf), sorted by ST.  `viscoroll plot` draws the .nc file as bars at the last time.
+    95 % confidence interval (S1_conf, ST_conf), sorted by ST.
+    `viscoroll plot` draws the .nc file as bars, for the last time.
 
     example:
       viscoroll sensitivity run.toml -n 4096 -o sensitivity.nc

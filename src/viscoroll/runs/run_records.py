@@ -326,11 +326,11 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
     of_a_block = record.summary is not None
     if record.run == identity(run) and (of_a_block or record.motions == run.settings.n):
         return
-    own = _software()
-    written = json.loads(str(record.about.get("versions", json.dumps(own))))
-    if other := ", ".join(map(" ".join, sorted(written.items() - own.items()))):
-        problem = f"was written with other software ({other}): finish it with that software"
-        raise FileError(root, f"{problem}, or {ADVICE}")
+    own = json.dumps(_software())
+    if (versions := record.about.get("versions", own)) != own:
+        other = sorted(json.loads(str(versions)).items() - _software().items())
+        problem = f"was written with other software ({', '.join(map(' '.join, other))})"
+        raise FileError(root, f"{problem}: finish it with that software, or {ADVICE}")
     # this run with the number of motions of the store: has it the identity of the store?
     before = run._with_settings(n=max(record.motions, 1))
     if of_a_block or record.run != identity(before):
@@ -362,11 +362,11 @@ def _no_extension(before: Run, run: Run) -> str:
         even = 1 << n.bit_length()
         return f"drawn by Sobol's sequence, and n = {n} is no power of two: set n = {even}"
     if run.block != before.block:
-        found, now = before.block, run.block
-        return f"in blocks of {found}, not of {now} as now: set block = {found} in [run]"
+        found = f"in blocks of {before.block} motions, not of {run.block} as now"
+        return f"{found}: set block = {before.block} in [run]"
     if run.method != before.method:
-        old = before.method
-        return f"by method {old!r}, not {run.method!r} as now: set method = {old!r} in [run]"
+        found = f"computed by method {before.method!r}, not {run.method!r} as now"
+        return f"{found}: set method = {before.method!r} in [run]"
     return ""
 
 

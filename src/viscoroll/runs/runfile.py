@@ -383,12 +383,12 @@ def _check_inputs(run: Run) -> None:
             problem = re.sub(_PLACE, "", getattr(error, "problem", str(error)))
             # a single end is refused too: the range is at fault, else that the motions differ
             if any(_fault_of(run, medians | {number.name: end}) for end in ends.tolist()):
-                extent, remedy = (
-                    ("draws extend", "narrow the distribution by truncate = [low, high]")
+                problem = f"extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}"
+                problem = (
+                    f"draws {problem}; narrow the distribution by truncate = [low, high]"
                     if number.name in inputs.random
-                    else ("numbers of the data file extend", "remove its rows out of range")
+                    else f"numbers of the data file {problem}; remove its rows out of range"
                 )
-                problem = f"{extent} from {ends[0]:.6g} to {ends[1]:.6g}: {problem}; {remedy}"
             problem = f"{number.name}: {problem}"
             raise section_error(run.path, number.section, number.key, problem) from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)

@@ -488,8 +488,7 @@ class _Reader:
         frozen = law(**{key: float(value) for key, value in parameters.items()})
         # scipy returns NaN for parameters out of range, and raises nothing
         if not np.isfinite(frozen.ppf(0.5)):
-            given = ", ".join(f"{key} = {value:g}" for key, value in parameters.items())
-            raise self.fault(number, f"{name} does not allow {given} (scale must be > 0)")
+            raise self.fault(number, f"{name} does not allow {parameters} (scale must be > 0)")
         return frozen
 
     def add_column(self, number: Input, table: Named) -> None:
@@ -517,9 +516,8 @@ class _Reader:
         file = table.get("file")
         column = table.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
-            key = "column" if isinstance(file, str) else "file"
-            problem = f"{key} is missing or no text: give file and column, or distribution"
-            raise self.fault(number, problem)
+            found = f"{'column' if isinstance(file, str) else 'file'} is missing or no text"
+            raise self.fault(number, f"{found}: give file and column, or distribution")
         where = f"column {column!r} of {file}"
         path = self.path.parent / file
         try:
