@@ -82,8 +82,8 @@ def _named_heading(text: str, form: str = "NAME=HEADING, as 'storage=Module 1'")
     """Convert an argument NAME=HEADING to (quantity, heading); :func:`viscoroll.read_dma` checks
     the quantity.
 
-    text: the argument, as "storage=Module 1"; the heading may have further equals signs.  form: for
-    the error.
+    text: the argument, as "storage=Module 1"; the heading may have further equals signs.
+    form: form of the argument, for the error.
     Returns (text before the first equals sign, text after it), both without blanks at their ends.
     Raises ArgumentTypeError where there is no equals sign or no heading.
     """

@@ -63,7 +63,7 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 
 @command("contact", *_speeds(numbers), add_table)
 def contact(arguments: Namespace) -> None:
-    """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
+    """Compute the contact at constant speed: length, shift, stick zone, creep force Q and rolling moment M.
 
     The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT (COUNT numbers
     at equal distances), LOW:HIGH:COUNT:log (with equal ratios), or several of these, separated by commas.
@@ -213,7 +213,7 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
     option(
         "--V",
         type=numbers,
-        help="prescribed speed; it takes the place of --force or --torque, which is then computed",
+        help="given speed, m/s for [cylinder], in place of --force or --torque, which is computed",
     ),
     add_table,
 )

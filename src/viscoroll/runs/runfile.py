@@ -435,7 +435,7 @@ def _fault_of(run: Run, values: Named) -> ParameterError | FileError | None:
         for name in ("unsteady", "rested"):
             given = getattr(settings, name)
             if given is not False and isinstance(roller, Rollers) and roller.seconds:
-                allowed = "left out if T_epsilon is uncertain"
+                allowed = "left out, as T_epsilon is uncertain"
                 return ParameterError(name, str(given).lower(), allowed)
         start = tuple(map(content["start"].get, START))
         options = SolverOptions(
@@ -531,8 +531,8 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
         problem = ""
         if unknown := {a, b} - random.keys():
             name = a if a in unknown else b
-            known = ", ".join(random) or "the file has none"
-            problem = f"{name!r} is no input with a distribution; these have one: {known}"
+            known = ", ".join(random) or "none"
+            problem = f"{name!r} is no input with a distribution; the file has: {known}"
             problem += suggestion(name, random)
         elif a == b:
             problem = f"{a}.{b} names one input twice: name two different inputs"

@@ -281,7 +281,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 
     found = np.full((len(_INDICES), len(values) - 2), np.nan)
     if missing := np.count_nonzero(~np.isfinite(values)):
-        return found, f"{missing} of {values.size} motions have no value"
+        return found, f"no value in {missing} of {values.size} motions"
     if not values.std() > noise:
         return found, "varies by no more than the error of integration, which rtol limits"
     random = np.random.default_rng(seed)
