@@ -415,7 +415,7 @@ conductance = 6.0
         )
     band = "measured = { low = 1e-3, high = 1e-2, misfit = 0.01 }\nT_ref"
     path.write_text(path.read_text().replace("T_ref", band))
-    words = "ambient = 15 gives no allowed temperature at V = 3 m"
+    words = "ambient = 15 °C gives no allowed temperature at V = 3 m"
     refused(lambda: vr.runs.read_run(path), words, error=vr.FileError)
 
 

@@ -117,7 +117,7 @@ REFUSED = [
                     "= 10.0\n[run]\nn = 2\nt = [1.0]"
                 )
             ),
-            "line 2: [start] V0 is missing: must be a number": lambda: read_run(
+            "line 2: [start] V0 is missing: give a number": lambda: read_run(
                 file('preset = "paper-section-5"\n[start]\nomega0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
             ),
             "given.nc | law_schema 2, but viscoroll": lambda: of_grid(
@@ -246,7 +246,7 @@ REFUSED = [
                 '"lognorm"',
                 '"lognrom"',
             ),
-            "line 4 | lognorm also needs s": ("a preset", "s = 0.3, ", ""),
+            "line 4 | lognorm lacks these parameters: s": ("a preset", "s = 0.3, ", ""),
             "an integer of more than 64 bits: write a shorter or a decimal": (
                 "a preset",
                 "j = 0.4",
@@ -254,7 +254,7 @@ REFUSED = [
             ),
             "has the number 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
             "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
-            "line 4 | : must be [low, high] with a probability above 0": (
+            "line 4 | truncate = [-0.05, 0.0]: must be where the distribution has draws": (
                 "a preset",
                 "[0.05, 0.6]",
                 "[-0.05, 0.0]",
@@ -275,7 +275,7 @@ REFUSED = [
                 "brake = 0.01",
                 "V = 0.01\nomega = 0.01",
             ),
-            "line 16 | uncertain inputs other than V0 and omega0": (
+            "line 16 | is uncertain, and not only V0 and omega0": (
                 "a preset",
                 "block = 12",
                 'method = "flow"',
@@ -286,7 +286,7 @@ REFUSED = [
                 "[]",
             ),
             "file.toml: line 3: [scene.creep] J_2: draws extend from 0.3 to 0.9: sum of J = "
-            "1.0999999999999999 | add truncate = [low, high]": (
+            "1.0999999999999999 | narrow the distribution by truncate = [low, high]": (
                 "compliances",
                 "scale = 0.2",
                 "scale = 0.6",
@@ -299,7 +299,7 @@ REFUSED = [
                 "coupled = false\n[material]\nthickness = 0.1",
             ),
             "file.toml: line 10: [drive.brake] drive_brake_time_1: draws extend from "
-            "5.55112e-17 to 1: brake | add truncate = [low, high]": (
+            "5.55112e-17 to 1: brake | narrow the distribution by truncate = [low, high]": (
                 "driven",
                 "brake = 0.01",
                 'brake = { times = [{ distribution = "uniform" }, 0.5], values = [1.0, 2.0] }',

@@ -301,8 +301,8 @@ REFUSED = {
     "contact PAPER --V one --delta 0": "--V: 'one' must be a number, LOW:HIGH:COUNT",
     "stress PAPER --V 1,2 --delta 0": "--V: '1,2' must be a number",
     "material fit rubber.toml --column storage": "argument --column: 'storage' must be "
-    "NAME=HEADING, for example 'storage=Module 1'",
-    "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=HEADING",
+    "NAME=HEADING, as 'storage=Module 1'",
+    "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=UNIT",
     "material fit dma.csv --mode shear": "mode = 'shear': must be 'tension', as read from dma.csv",
     "material fit dma.csv --column temperature=E_loss": "given for temperature, but its unit "
     "'MPa' is not a unit of temperature: give the unit of the column, as units={'temperature'",

@@ -99,7 +99,7 @@ REFUSED = [
                 1e6, 0.5, T_ref=xr.DataArray(1.0, attrs={"units": "1/Hz"})
             ),
             "shift = <class | a function of the temperature": lambda: TREAD.at(20.0, shift=vr.WLF),
-            "has shape (3,): must be a number, or count = 2 numbers, one for each motion": lambda: (
+            "has shape (3,): must be a number, or one for | the argument count, is 2": lambda: (
                 lambda run: roll_inputs(run, dict.fromkeys(run.inputs.medians, [1.0] * 3), 2)
             )(read_run(vr.datasets.path("run.toml"))),
             "temperature = -31.6 | above T0 - C2 = -31.6 °C, where the WLF shift": lambda: (
@@ -214,10 +214,10 @@ REFUSED = [
                 ),
                 1024,
             ),
-            "summaries = x at t = 0 (varies by no more than": partial(
+            "has Sobol indices: x at t = 0 (varies by no more than": partial(
                 run, "unsteady", "t = [1.0, 3.0]", 't = 0.0\nsummaries = ["x"]'
             ),
-            "[correlation] = | E_2 | omega0 | must be left out": partial(
+            "[correlation] relates the inputs | E_2 | omega0 | must be left out": partial(
                 run, "strengths", "n = 20", "n = 1"
             ),
             "the run file has no uncertain input": lambda: read_run(

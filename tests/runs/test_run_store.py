@@ -74,7 +74,7 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
     data[-1] ^= 1
     (store / "motions/V/7.0").write_bytes(data)
     export = partial(export_netcdf, store, tmp_path / "all.nc")
-    refused_file(export, "1 of 12 blocks ", "to repair ")
+    refused_file(export, ": 1 of 12", "or repair ")
     assert not (tmp_path / "all.nc").exists()
     (store / "V_mean/0").write_bytes(b"")
     refused_file(lambda: open_run(store), "V_mean/0")
@@ -105,7 +105,7 @@ def test_damage_is_found_and_put_right(run, tmp_path, whole, change):
         else:
             (store / name).write_bytes(data if change == "flip" else data[: len(data) // 2])
         if name == "records/start":
-            refused_file(lambda: verify(store), "or is damaged")
+            refused_file(lambda: verify(store), "records/start is missing or damaged")
         else:
             assert not verify(store).ok, name
         assert run_ensemble(run, store) == ("7" in name), name
@@ -142,7 +142,10 @@ def test_other_folders_are_refused(tmp_path, whole):
     thesis.mkdir()
     (thesis / "chapter.tex").write_text("dear")
     for call, words in (
-        (partial(run_ensemble, run, whole), "another or earlier run file: give"),
+        (
+            partial(run_ensemble, run, whole),
+            "another run file, or of this one before a change: give",
+        ),
         (
             partial(run_ensemble, run, thesis),
             "is no results store (it contains chapter.tex): give another folder",
@@ -186,7 +189,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch
         with disk_for(writes, monkeypatch):
             run_ensemble(run, smaller, threads=1)
         assert not verify(smaller).ok
-        refused_file(lambda: open_run(smaller), "to repair it")
+        refused_file(lambda: open_run(smaller), "or repair it")
     run_ensemble(run, smaller)
     assert content(smaller) == content(whole)
 
@@ -197,16 +200,20 @@ def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch
         (
             "",
             "n = 300",
-            "contains 350 motions of this run file, and n must not be reduced: set n >= 350",
+            "contains 350 motions of this run file, and n = 300 is smaller: set n >= 350",
         ),
         (
             'design = "latin"',
             "n = 1200",
             "a Latin hypercube, whose points depend on n: keep n = 350",
         ),
-        ('design = "sobol"', "n = 1200", "whose n should be a power of two: set n = 2048"),
-        ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
-        ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
+        ('design = "sobol"', "n = 1200", "and n = 1200 is no power of two: set n = 2048"),
+        (
+            "block = 1000",
+            "n = 1200",
+            "in blocks of 350 motions, not of 1000 as now: set block = 350",
+        ),
+        ("", "n = 5000", "by method 'integrate', not 'flow' as now: set method = 'integrate'"),
     ],
 )
 def test_a_run_that_cannot_grow_is_refused(tmp_path, before, now, words):
@@ -262,5 +269,5 @@ def test_an_interrupt_answers_at_once(tmp_path):
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
-    kept = "interrupted: 0 of 4 blocks were added to store.zarr; to resume, repeat the run"
+    kept = "interrupted: 0 of 400000 motions were added to store.zarr; to resume, repeat the run"
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

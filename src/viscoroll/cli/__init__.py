@@ -73,9 +73,9 @@ def samples(arguments: argparse.Namespace) -> None:
 
 @command("warmup")
 def warm_up(arguments: argparse.Namespace) -> None:
-    """Compile all kernels in advance, so that the first calls do not wait.
+    """Compile all functions in advance, so that the first calls do not wait.
 
-    The compiled kernels go into the cache, once for each machine and version of the package.  If they are there
+    The compiled functions go into the cache, once for each machine and version of the package.  If they are there
     already, the command takes some seconds.
 
     example:
@@ -101,8 +101,8 @@ def warm_up(arguments: argparse.Namespace) -> None:
         if count % 6 == 5:  # the compiler leaves some 30 MB a call behind; collecting takes 0.7 s
             gc.collect()
         call()
-    where = f"{len(calls)} kinds of calls, now in {cache_folder.cache_root()}"
-    print(f"functions are compiled for {where} (this took {time.perf_counter() - start:.1f} s)")
+    done = f"{len(calls)} kinds of calls (this took {time.perf_counter() - start:.1f} s)"
+    print(f"functions are compiled for {done}; cache folder: {cache_folder.cache_root()}")
 
 
 def _calls() -> dict[str, Callable[[], Any]]:

@@ -78,17 +78,18 @@ def show(arguments: Namespace) -> None:
             print(as_text(pd.DataFrame(columns), heading))
 
 
-def _named_heading(text: str) -> tuple[str, str]:
+def _named_heading(text: str, form: str = "NAME=HEADING, as 'storage=Module 1'") -> tuple[str, str]:
     """Convert an argument NAME=HEADING to (quantity, heading); :func:`viscoroll.read_dma` checks
     the quantity.
 
-    text: the argument, for example "storage=Module 1"; the heading may have further equals signs.
+    text: the argument, as "storage=Module 1"; the heading may have further equals signs.
+    form: form of the argument, for the error.
     Returns (text before the first equals sign, text after it), both without blanks at their ends.
     Raises ArgumentTypeError where there is no equals sign or no heading.
     """
     name, _, heading = map(str.strip, text.partition("="))
     if not heading:
-        raise ArgumentTypeError(f"{text!r} must be NAME=HEADING, for example 'storage=Module 1'")
+        raise ArgumentTypeError(f"{text!r} must be {form}")
     return name, heading
 
 
@@ -99,7 +100,8 @@ def _units(text: str) -> Any:
     Raises ArgumentTypeError for a part without "=" behind a first one with it.
     """
     parts = text.split(",")
-    return dict(map(_named_heading, parts)) if "=" in parts[0] else tuple(parts)
+    units = (_named_heading(part, "NAME=UNIT, as storage=MPa") for part in parts)
+    return dict(units) if "=" in parts[0] else tuple(parts)
 
 
 @command(
@@ -137,7 +139,7 @@ def _units(text: str) -> Any:
         "--reference",
         type=float,
         metavar="T",
-        help="reference temperature of a master curve (of several temperatures), degrees Celsius",
+        help="reference temperature of data at several temperatures, degrees Celsius",
     ),
     option(
         "--wlf",
@@ -150,7 +152,7 @@ def _units(text: str) -> Any:
         default="both",
         help="moduli whose overlap determines the shift of the curves (default: both)",
     ),
-    option("--modes", type=int, help="largest number of terms (default: as few as --misfit needs)"),
+    option("--modes", type=int, help="most Prony terms (default: as few as --misfit needs)"),
     option(
         "--misfit",
         type=float,
@@ -261,7 +263,7 @@ def _wlf(text: str) -> vr.WLF:
     ),
     option("--seed", type=int, default=0, help="seed of the random points (default: 0)"),
     option("--robust", action="store_true", help="give outliers less weight"),
-    output(*FIGURES, name="--plot", required=False, more=": data, fit and residuals"),
+    output(*FIGURES, name="--plot", required=False, more=": data, fit and their differences"),
     output(".txt", ".json", ".nc", required=False, more="; the report is printed too"),
 )
 def identify(arguments: Namespace) -> None:
@@ -404,7 +406,7 @@ def law(arguments: Namespace) -> None:
         "--method",
         default="table",
         help="table (default): the law of the roller; direct: numerical solution "
-        "of the equations at each node, for half-spaces of one relaxation time",
+        "of the equations at each point of the grid, for half-spaces of one relaxation time",
     ),
     output(*_GRID),
 )
@@ -451,8 +453,8 @@ def build(arguments: Namespace) -> None:
 def grid(arguments: Namespace) -> None:
     """Write the coupled solution of a roller as a table over speed and creepage.
 
-    Pressure and shear are solved together.  The table holds for one mu and one thickness divided by l0, and states the
-    largest errors between its nodes.  vr.load_law reads it.  Formats: .nc, .cdf (without HDF5) and .h (a header of C).
+    Pressure and shear are solved together.  The table is that of one mu and one thickness over contact length at rest.
+    It states the largest errors of interpolation.  vr.load_law reads it.  Formats: .nc, .cdf (without HDF5), .h (for C).
 
     example:
       viscoroll samples
@@ -495,7 +497,7 @@ def validate(arguments: Namespace) -> int:
     more than 400 speeds, a table of the coupled solution at no more than 80 states.  The exit code is 1 if an error is
     larger than its limit.  The limit is twice the stated error, and eight times the stated error for a cover or a table
     of the coupled solution; for the functions of a cover that describe the effect of shear 1e-8 is added.  For a grid the
-    limit is at most half of the largest value, and a node must not differ from the law by more than 1e-12.
+    limit is at most half of the largest value, and a stored value must not differ from the law by more than 1e-12.
 
     example:
       viscoroll samples
@@ -591,7 +593,7 @@ def fmu(arguments: Namespace) -> None:
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
         text = "an FMU is in SI units: kappa, mu, gamma and j of the dimensionless scene are not "
-        text += "used; set the parameters of the FMU (R, T_ref, mu, load, mass, inertia = j) in "
-        text += "the program that imports it"
+        text += "used; set the parameters of the FMU (R, T_ref, mu, load, mass, and inertia, which "
+        text += "is j) in the program that imports it"
         warnings.warn(text, vr.ModelWarning, stacklevel=2)
     _print_size(arguments.output)

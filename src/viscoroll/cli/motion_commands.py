@@ -41,6 +41,8 @@ _V_HELP = (
     "velocity of the axis, any sign; in m/s for [cylinder], divided by R/T_ref for [scene] "
     "and presets"
 )
+#: Help of an angular velocity.
+_OMEGA_HELP = "angular velocity, rad/s for [cylinder], else times T_ref"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
@@ -55,13 +57,13 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
         SCENE,
         option("--V", type=kind, required=True, help=_V_HELP),
         option("--delta", type=kind, help="creepage (omega R - V)/V"),
-        option("--omega", type=kind, help="angular velocity, rad/s for [cylinder]; or --delta"),
+        option("--omega", type=kind, help=f"{_OMEGA_HELP}; in place of --delta"),
     )
 
 
 @command("contact", *_speeds(numbers), add_table)
 def contact(arguments: Namespace) -> None:
-    """Compute the contact at constant speed: lam, epsilon, delta_star, beta, Q, M.
+    """Compute the contact at constant speed: length, shift, stick zone, creep force Q and rolling moment M.
 
     The result has a row for every pair of V and delta (or omega).  Each option is a number, LOW:HIGH:COUNT (COUNT numbers
     at equal distances), LOW:HIGH:COUNT:log (with equal ratios), or several of these, separated by commas.
@@ -139,7 +141,7 @@ def stress(arguments: Namespace) -> None:
         "--omega0",
         type=float,
         required=True,
-        help="initial angular velocity, rad/s for [cylinder], else times T_ref",
+        help=f"initial {_OMEGA_HELP}",
     ),
     option(
         "--t",
@@ -211,7 +213,7 @@ def _given(arguments: Namespace, *names: str) -> dict[str, Any]:
     option(
         "--V",
         type=numbers,
-        help="prescribed speed; it takes the place of --force or --torque, which is then computed",
+        help="given speed, m/s for [cylinder], in place of --force or --torque, which is computed",
     ),
     add_table,
 )
@@ -258,14 +260,19 @@ def steady(arguments: Namespace) -> None:
 @command(
     "heat",
     SCENE,
-    option("--V", type=numbers, help="speed in m/s; without it that of steady rolling"),
+    option("--V", type=numbers, help="speed in m/s (default: that of steady rolling by the loads)"),
     option(
         "--ambient",
         type=numbers,
         required=True,
         help="temperature of the surroundings in degrees Celsius",
     ),
-    option("--conductance", type=numbers, required=True, help="heat given off per kelvin, W/(m K)"),
+    option(
+        "--conductance",
+        type=numbers,
+        required=True,
+        help="heat that a metre of roller gives off per kelvin above --ambient, W/(m K)",
+    ),
     option("--force", type=numbers, help="force on the axis along V, N/m"),
     option("--torque", type=numbers, help="torque on the cylinder along omega, N m/m"),
     option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill"),
@@ -290,9 +297,9 @@ def heat(arguments: Namespace) -> None:
     """  # noqa: E501
     given = _given(arguments, "V", "ambient", "conductance", "force", "torque", "slope")
     found = roller_of_argument(arguments.scene).temperature(**given)
-    for n, reason in enumerate(found.reason[:_MOST_LINES]):
-        if reason:
-            warnings.warn(f"state {n}: {reason}", vr.ModelWarning, stacklevel=2)
+    reasons = [f"state {n}: {reason}" for n, reason in enumerate(found.reason) if reason]
+    for text in reasons[:_MOST_LINES]:
+        warnings.warn(text, vr.ModelWarning, stacklevel=2)
     show(arguments, found)
 
 
@@ -347,7 +354,7 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
     option(
         "--threads",
         type=int,
-        help="number of threads, or of local processes (default: number of cores)",
+        help="threads, or local processes (default: $VISCOROLL_THREADS, else the number of cores)",
     ),
 )
 def ensemble(arguments: Namespace) -> None:
@@ -397,7 +404,7 @@ def ensemble(arguments: Namespace) -> None:
         or (False if os.environ.get("VISCOROLL_QUIET") == "1" else "lines"),
     )
     if evaluated < run.blocks:
-        print(f"{run.blocks - evaluated} of {run.blocks} blocks were complete already")
+        print(f"blocks that were complete already: {run.blocks - evaluated} of {run.blocks}")
     results = vr.runs.open_run(arguments.output)
     print(as_text(results.to_pandas().reset_index(), str(results)), end="")
 
@@ -406,12 +413,13 @@ def ensemble(arguments: Namespace) -> None:
 def verify(arguments: Namespace) -> int:
     """Check every file of a results store against its checksum (SHA-256).
 
-    The exit code is 1 if a file differs or is missing, or the run is unfinished; for the file records/start it is 2.
+    The exit code is 1 if a file differs or is missing, or the run is unfinished.
+    It is 2 if the file records/start is missing or damaged.
 
     arguments: parsed command line with store, path of the folder of the results.
     Returns that code, True for 1, also for a run that is not finished.
     Raises FileError for a folder that is no store, or where the record of its start is damaged.
-    """  # noqa: E501
+    """
     verdict = vr.runs.verify(arguments.store)
     print(f"{arguments.store}: {verdict}")
     return not verdict.ok  # True is exit code 1
@@ -433,7 +441,8 @@ def sensitivity(arguments: Namespace) -> None:
     """Compute Sobol indices of the uncertain inputs of a run file.
 
     The table has first-order (S1) and total (ST) indices of the summarised quantities, with the half-width of the
-    95 % confidence interval (S1_conf, ST_conf), sorted by ST.  `viscoroll plot` draws the .nc file as bars (last time).
+    95 % confidence interval (S1_conf, ST_conf), sorted by ST.
+    `viscoroll plot` draws the .nc file as bars, for the last time.
 
     example:
       viscoroll sensitivity run.toml -n 4096 -o sensitivity.nc
@@ -470,7 +479,7 @@ def sensitivity(arguments: Namespace) -> None:
         f"seed {about['seed']}"
     ]
     lines += [
-        f"{count} motions: {key.removeprefix('ended: ')}"
+        f"{count} of {about['motions']} motions: {key.removeprefix('ended: ')}"
         for key, count in about.items()
         if key.startswith("ended: ")
     ]
@@ -556,8 +565,9 @@ def _figure_of_netcdf(path: str) -> Any:
     except vr.ParameterError:  # a ValueError too, but no sign of an incomplete result
         raise
     except (AttributeError, KeyError, ValueError) as error:
+        reason = f"is not a complete result of viscoroll ({' '.join(str(error).split()):.100})"
         raise vr.FileError(
-            path, "is not a result of viscoroll, or lacks a part of one: write the result again"
+            path, f"{reason}: give another file, or write this one again with viscoroll"
         ) from error
 
 

@@ -122,7 +122,7 @@ def run_ensemble(
         If zarr, or dask for a cluster, is not installed.
     Interrupted
         At Ctrl-C (a KeyboardInterrupt) while blocks are evaluated, within a second: finished blocks
-        are kept, and the message states their number.
+        are kept, and the message states the number of their motions.
 
     Warns
     -----
@@ -156,14 +156,15 @@ def run_ensemble(
         warn_of_materials(run)
         with locked(store.root), _progress_bar(run, progress) as advance:
             store.start()
-            evaluated = 0
+            evaluated = added = 0
             try:
                 for motions in _evaluate_missing(store, submit, workers, advance):
                     evaluated += 1
+                    added += motions
                     advance(motions)
             except KeyboardInterrupt:
-                added = f"{evaluated} of {run.blocks} blocks were added to {path}"
-                raise Interrupted(f"interrupted: {added}; to resume, repeat the run") from None
+                kept = f"{added} of {run.settings.n} motions were added to {path}"
+                raise Interrupted(f"interrupted: {kept}; to resume, repeat the run") from None
             store.finish()
     return evaluated
 
@@ -250,6 +251,9 @@ def _executor(
             "cluster", repr(cluster), "'local', or 'tcp://host:port' of a dask scheduler"
         )
     distributed = import_extra("distributed", "cluster")
+    failed = (
+        "no connection to this cluster ({}): if it is an address, start a scheduler there first"
+    )
     try:
         with ExitStack() as stack:
             for name in ("distributed", "distributed.client"):
@@ -257,9 +261,12 @@ def _executor(
                 stack.callback(logger.setLevel, logger.level)
                 logger.setLevel(logging.CRITICAL)  # an error is raised, not logged
             client = stack.enter_context(_client(distributed, cluster, threads))
+            failed = "the cluster or a worker was lost ({}): repeat the call or command to resume"
             workers = sum(client.nthreads().values())
             if not workers:
-                raise FileError(cluster, "this cluster has no workers: start `dask worker ADDRESS`")
+                raise FileError(
+                    cluster, f"this cluster has no workers: start some by `dask worker {cluster}`"
+                )
             # not pure: equal calls are evaluated again, since a block may have been lost on disk;
             # a task is given to other workers three times after its worker died
             with client.get_executor(pure=False, retries=3) as pool:
@@ -274,8 +281,7 @@ def _executor(
         distributed.scheduler.KilledWorker,
     ) as error:
         text = " ".join((str(error) or type(error).__name__).split())
-        problem = f"the connection to the cluster was lost ({text:.200})"
-        raise FileError(cluster, f"{problem}: repeat the call or command to resume") from error
+        raise FileError(cluster, failed.format(f"{text:.200}")) from error
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
@@ -375,9 +381,9 @@ class Estimate:
         laws *= self.law_seconds > 0.0
         blocks = f"{run.blocks} block{'s' * (run.blocks != 1)}"
         return (
-            f"{run.settings.n} motions in {blocks} of {run.block}, method {run.method}\n"
-            f"time    about {_duration(self.seconds)} on {self.workers} worker(s){laws}\n"
-            f"memory  about {self.memory / 1e6:.0f} MB at a time\n"
+            f"{run.settings.n} motions in {blocks} of {run.block} motions, method {run.method}\n"
+            f"time    about {_duration(self.seconds)} on {self.workers} thread(s){laws}\n"
+            f"memory  about {self.memory / 1e6:.0f} MB at most\n"
             f"disk    about {self.stored / 1e6:.1f} MB\n"
             f"estimated from a trial of {self.trial} motion(s); nothing was written"
         )

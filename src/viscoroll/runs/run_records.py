@@ -328,12 +328,14 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
         return
     own = json.dumps(_software())
     if (versions := record.about.get("versions", own)) != own:
-        problem = f"was written with other software, {versions}: finish it with these versions"
-        raise FileError(root, f"{problem}, or {ADVICE}")
+        other = sorted(json.loads(str(versions)).items() - _software().items())
+        problem = f"was written with other software ({', '.join(map(' '.join, other))})"
+        raise FileError(root, f"{problem}: finish it with that software, or {ADVICE}")
     # this run with the number of motions of the store: has it the identity of the store?
     before = run._with_settings(n=max(record.motions, 1))
     if of_a_block or record.run != identity(before):
-        raise FileError(root, f"contains the results of another or earlier run file: {ADVICE}")
+        problem = "contains the results of another run file, or of this one before a change"
+        raise FileError(root, f"{problem}: {ADVICE}")
     if problem := _no_extension(before, run):
         raise FileError(
             root, f"contains {record.motions} motions of this run file, {problem}, or {ADVICE}"
@@ -353,16 +355,18 @@ def _no_extension(before: Run, run: Run) -> str:
     n = run.settings.n
     design = run.settings.design
     if n < before.settings.n:
-        return f"and n must not be reduced: set n >= {before.settings.n}"
+        return f"and n = {n} is smaller: set n >= {before.settings.n}"
     if design == "latin":
         return f"a Latin hypercube, whose points depend on n: keep n = {before.settings.n}"
     if design == "sobol" and n & (n - 1):
         even = 1 << n.bit_length()
-        return f"drawn by Sobol's sequence, whose n should be a power of two: set n = {even}"
+        return f"drawn by Sobol's sequence, and n = {n} is no power of two: set n = {even}"
     if run.block != before.block:
-        return f"in blocks of {before.block}: add block = {before.block} to [run]"
+        found = f"in blocks of {before.block} motions, not of {run.block} as now"
+        return f"{found}: set block = {before.block} in [run]"
     if run.method != before.method:
-        return f"computed by method {before.method!r}: add method = {before.method!r} to [run]"
+        found = f"computed by method {before.method!r}, not {run.method!r} as now"
+        return f"{found}: set method = {before.method!r} in [run]"
     return ""
 
 

@@ -69,10 +69,13 @@ class Verdict:
             return f"complete: {blocks} and the summaries match their checksums (SHA-256)"
         lines = [f"damaged or missing: {name}" for name in self.damaged]
         if self.missing:
-            lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"]
+            lines += [
+                f"missing or incomplete blocks of motions: {len(self.missing)} of {self.blocks}"
+            ]
         if not self.finished:
             lines += ["the summaries are missing or incomplete"]
-        return "\n".join([*lines, "to repair the store, repeat the run (`viscoroll ensemble`)"])
+        remedy = "to complete or repair the store, repeat the run (`viscoroll ensemble`)"
+        return "\n".join([*lines, remedy])
 
 
 def verify(path: FilePath) -> Verdict:
@@ -137,12 +140,15 @@ def start_of(root: Path) -> Record:
     damaged one.
     """
     if not root.is_dir():
-        raise FileError(root, "is not a results store: there is no such folder")
+        raise FileError(root, "is not a results store: no folder of this name exists")
     refuse_unreadable(root)
     if start := read_record(root / RECORDS / "start"):
         return start
     raise FileError(
-        root, "is not a results store, or is damaged: repeat the run that wrote it to repair it"
+        root,
+        "its file records/start is missing or damaged: repeat the run that wrote it to repair it"
+        if (root / RECORDS).is_dir()
+        else "is not a results store: it has no folder records; give that of a run",
     )
 
 
@@ -218,14 +224,15 @@ class RunResults(Result):
         ...     vr.runs.open_run("results.zarr").motions()
         ... except vr.FileError as error:
         ...     print(error.problem)
-        contains summaries but no motions: repeat the run with keep = "all" in [run]
+        contains summaries but no motions: set keep = "all" in [run] and run it into a new folder
         """
         import xarray as xr
 
         if not (self.path / MOTIONS).is_dir():
             raise FileError(
                 self.path,
-                'contains summaries but no motions: repeat the run with keep = "all" in [run]',
+                'contains summaries but no motions: set keep = "all" in [run] and run it into a '
+                "new folder",
             )
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
@@ -330,7 +337,7 @@ class RunResults(Result):
             text = f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}"
             rows.append(SummaryRow(name, text, unit_of(mean.attrs)))
         rows += [
-            SummaryRow("ended", f"{count}: {MotionStatus(code).message}")
+            SummaryRow("ended", f"{count} of {len(self)} motions: {MotionStatus(code).message}")
             for code, count in zip(data["status"].values, data["ended"].values)
             if count
         ]
@@ -377,10 +384,8 @@ def open_run(path: FilePath) -> RunResults:
     root = as_path(path)
     start = start_of(root)
     if faults := problems(root, "end", start.run, start.motions):
-        raise FileError(
-            path,
-            f"{faults[0]} is missing or damaged: repeat `viscoroll ensemble` to repair it",
-        )
+        problem = f"the run is not finished, or the file {faults[0]} is missing or damaged"
+        raise FileError(path, f"{problem}: repeat `viscoroll ensemble` to complete or repair it")
     # chunks=None: arrays of numpy, read at their use, without dask
     return RunResults(root, xr.open_zarr(root, chunks=None))
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 import msgspec
 import numpy as np
 
-from ..core import Named, ParameterError, Scale, Schedule, check_array, described_error
+from ..core import Named, ParameterError, Scale, Schedule, check_array, section_error
 from ..materials import (
     SECTIONS,
     Material,
@@ -178,45 +178,45 @@ def roller_of(path: Path, content: Named) -> Scene | Cylinder:
     numbers = content["cylinder"]
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
     if "heat" in content:
-        bodies = _warm_bodies(content, numbers, bodies)
+        bodies = _warm_bodies(path, content, numbers, bodies)
     solids = any(isinstance(body, Solid) for body in bodies.values())
     differ = solids or np.ndim(numbers.get("T_epsilon", 0.0))
     return (Rollers if differ else Cylinder)(**numbers, **bodies)
 
 
-def _warm_bodies(content: Named, numbers: Named, bodies: Named) -> Named:
+def _warm_bodies(path: Path, content: Named, numbers: Named, bodies: Named) -> Named:
     """Return the bodies of all motions at the temperatures at which their cylinders roll.
 
+    path: path of the run file, for errors.
     content: sections as in :func:`roller_of`, of which [heat] and [start] are read.
     numbers: [cylinder], numbers or arrays (n,); bodies: "material" and "base", those that the file
         has.
     Returns the bodies, of which those that relax are at the coldest equilibrium: a
     :class:`Material` of one temperature, a :class:`Solid` of several.
-    Raises ParameterError for a material that is uncertain itself, and as
-    :func:`viscoroll.temperature`.
+    Raises FileError if no speed is given; ParameterError for a material that is uncertain itself,
+    and as :func:`viscoroll.temperature`.
     """
     heat = content["heat"]
     speed = heat.get("speed", content["start"].get("V0"))
     if speed is None:
-        raise described_error("speed", "is missing", "given in [heat], as [start] has no V0")
+        problem = "speed is missing: give it in m/s, as [start] has no V0"
+        raise section_error(path, "heat", "speed", problem)
     for name, body in bodies.items():
         if isinstance(body, Solid):
-            raise described_error(
-                name,
-                "has uncertain numbers",
-                "without uncertain numbers, as [heat] finds the temperature of one material",
+            sentence = (
+                f"{name} has uncertain numbers, which [heat] refuses: fix them or remove [heat]"
             )
+            raise ParameterError(name, "uncertain", "fixed", sentence)
     ambient = heat["ambient"]
     found = Cylinder(**numbers, **bodies).temperature(
         speed, ambient=ambient, conductance=heat["conductance"]
     )
     for reason, theta, V in np.broadcast(found.reason, ambient, speed):
         if reason:
-            text = f"= {theta:g} gives no allowed temperature at V = {V:g} m/s ({reason})"
+            text = f"ambient = {theta:g} °C gives no allowed temperature at V = {V:g} m/s"
             # a roller too hot needs less; a frequency outside of the data may be too high or low
-            raise described_error(
-                "ambient", text, "another temperature; or change speed, load or conductance"
-            )
+            text = f"{text} ({reason}): change ambient, speed, load or conductance"
+            raise ParameterError("ambient", theta, "another temperature", text)
     # the coldest equilibrium, which a roller takes from cold
     theta = found.temperature[..., 0]
     warm = bodies.copy()

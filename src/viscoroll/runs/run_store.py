@@ -127,7 +127,7 @@ def roll_inputs(
             raise shape_error(
                 name,
                 np.shape(values[name]),
-                f"a number, or count = {count} numbers, one for each motion",
+                f"a number, or one for each motion; their number, the argument count, is {count}",
             )
     content = run.inputs.filled(values)
     settings = run.settings
@@ -386,8 +386,9 @@ class Store:
         for block in range(self.run.blocks):
             record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
-                problem = f"block {block} was damaged during the run"
-                raise FileError(self.root, f"{problem}: repeat the run to repair it")
+                problem = "was damaged or removed during the run"
+                path = _record_path(self.root, block)
+                raise FileError(path, f"{problem}: repeat the run to repair it")
             yield record.summary
 
 

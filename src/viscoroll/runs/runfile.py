@@ -19,6 +19,7 @@ All keys are in docs/ensembles.md.
 """
 
 import hashlib
+import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -62,6 +63,8 @@ from .uncertain_inputs import Inputs, inputs_in, inputs_of
 _MOST_MOTIONS = {"flow": 1 << 20, "integrate": 1 << 16}
 #: Largest size of a block in memory, bytes.
 _MOST_BYTES = 1 << 27
+#: First words of a FileError of a section.
+_PLACE = r"^(line \d+: )?(\[[^]]*\] )?"
 #: Keys of the section [start].
 START = ("V0", "omega0")
 #: Settings that the digest leaves out: a store may grow with n, and its identity contains the
@@ -172,16 +175,25 @@ class Run:
         pays = self.mappable and self.settings.n >= FLOW_PAYS and self.fastest > 0.0
         return "flow" if pays else "integrate"
 
-    @cached_property
+    @property
     def mappable(self) -> bool:
         """Whether a flow map serves: start speeds alone are uncertain, [drive] is absent or empty,
         unsteady false, and the bodies are half-spaces of one material.  Raises FileError for a
         roller that is wrong.
         """
-        driven = self.inputs.content.get("drive") or self.settings.unsteady
-        if driven or not set(self.inputs.uncertain) <= set(START):
-            return False
-        return roller_of(self.path, self.inputs.filled(self.inputs.medians)).scene().like_bodies
+        return not self._no_map
+
+    @cached_property
+    def _no_map(self) -> str:
+        """Why no flow map serves, in words of a message; "" if one does (:attr:`mappable`)."""
+        if self.inputs.content.get("drive"):
+            return "the file has [drive]"
+        if self.settings.unsteady:
+            return "unsteady is true"
+        if others := [name for name in self.inputs.uncertain if name not in START]:
+            return f"{others[0]} is uncertain, and not only V0 and omega0"
+        scene = roller_of(self.path, self.inputs.filled(self.inputs.medians)).scene()
+        return "" if scene.like_bodies else "the roller has a cover or two materials"
 
     @cached_property
     def fastest(self) -> float:
@@ -303,14 +315,15 @@ def read_run(path: FilePath) -> Run:
     inputs = inputs_of(path, content)
     medians = inputs.filled(inputs.medians)
     check_sections(path, medians, RUN_SECTIONS | {"run": RunSection, "correlation": None})
-    for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
+    needs = {"run": "n and t", "start": "V0 and omega0, except a speed that [drive] prescribes"}
+    for name, needed in needs.items():
         if name not in content:
             raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
     for name in START:
         # V0 may be missing where [drive] prescribes V, omega0 where it prescribes omega
         if name not in content["start"] and name[:-1] not in content.get("drive", {}):
             advice = ', or "rolling" for V0/R' * ("V0" in content["start"])
-            problem = f"{name} is missing: must be a number{advice}"
+            problem = f"{name} is missing: give a number{advice}"
             raise section_error(path, "start", name, problem)
     materials = parse_materials(path, medians)
     # a material without uncertain numbers is read once
@@ -336,16 +349,11 @@ def read_run(path: FilePath) -> Run:
     run = Run(path=path, text=text, settings=settings, inputs=inputs, t=times, digest=digest)
     if not settings.summaries:
         raise section_error(
-            path, "run", "summaries", "summaries = []: must name at least one quantity"
+            path, "run", "summaries", "summaries = []: must name at least one quantity, as 'V'"
         )
-    if settings.method == "flow" and not run.mappable:
-        raise section_error(
-            path,
-            "run",
-            "method",
-            "method = 'flow': must be 'auto' or 'integrate' if the file has [drive], unsteady = "
-            "true, a cover, two materials, or uncertain inputs other than V0 and omega0",
-        )
+    if settings.method == "flow" and run._no_map:
+        problem = f"method = 'flow': must be 'auto' or 'integrate', since {run._no_map}"
+        raise section_error(path, "run", "method", problem)
     _check_inputs(run)
     return run
 
@@ -372,19 +380,24 @@ def _check_inputs(run: Run) -> None:
             raise locate_error(run.path, inputs.content, error) from error
         if error is not None:
             # without "line N: [section] " of a FileError, which the new error states itself
-            problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
+            problem = re.sub(_PLACE, "", getattr(error, "problem", str(error)))
             # a single end is refused too: the range is at fault, else that the motions differ
             if any(_fault_of(run, medians | {number.name: end}) for end in ends.tolist()):
+                problem = f"extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}"
                 problem = (
-                    f"draws extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}; add "
-                    "truncate = [low, high] to the distribution, or remove rows of the data file"
+                    f"draws {problem}; narrow the distribution by truncate = [low, high]"
+                    if number.name in inputs.random
+                    else f"numbers of the data file {problem}; remove its rows out of range"
                 )
             problem = f"{number.name}: {problem}"
             raise section_error(run.path, number.section, number.key, problem) from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
         _check_motions(
-            run, values, " (by some draws: truncate distributions, or remove rows of data files)"
+            run,
+            values,
+            " (in some combinations of the draws: narrow distributions by truncate = [low, high], "
+            "or remove rows of data files)",
         )
 
 
@@ -422,7 +435,7 @@ def _fault_of(run: Run, values: Named) -> ParameterError | FileError | None:
         for name in ("unsteady", "rested"):
             given = getattr(settings, name)
             if given is not False and isinstance(roller, Rollers) and roller.seconds:
-                allowed = "left out if T_epsilon is uncertain"
+                allowed = "left out, as T_epsilon is uncertain"
                 return ParameterError(name, str(given).lower(), allowed)
         start = tuple(map(content["start"].get, START))
         options = SolverOptions(
@@ -499,13 +512,17 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
             path,
             "",
             "correlation",
-            "correlation: must be a section [correlation] with lines like V0.mu = 0.5",
+            f"correlation = {section!r:.40}: must be a section [correlation] with lines like "
+            "V0.mu = 0.5",
         )
     pairs: dict[tuple[str, str], Any] = {}
     for a, row in section.items():
         if not isinstance(row, dict):
-            allowed = "the correlation of two inputs, as V0.mu = 0.5 (no quotes)"
-            problem = f"{a} = {row!r:.40}: must be {allowed}"
+            problem = (
+                f"{a!r} is one name, as it has quotes: write {a} without quotes"
+                if "." in a
+                else f"{a} = {row!r:.40} names one input: name two, as in V0.mu = 0.5"
+            )
             raise section_error(path, "correlation", a, problem)
         pairs |= {(a, b): value for b, value in row.items()}
     names = tuple(name for name in random if any(name in pair for pair in pairs))
@@ -514,13 +531,13 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
         problem = ""
         if unknown := {a, b} - random.keys():
             name = a if a in unknown else b
-            known = ", ".join(random) or "there is none"
-            problem = f"{name!r} is not random: must be an input with a distribution ({known})"
+            known = ", ".join(random) or "none"
+            problem = f"{name!r} is no input with a distribution; the file has: {known}"
             problem += suggestion(name, random)
-        elif a == b or not is_real(value) or not -1.0 < value < 1.0:
-            problem = (
-                f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1), of two different inputs"
-            )
+        elif a == b:
+            problem = f"{a}.{b} names one input twice: name two different inputs"
+        elif not is_real(value) or not -1.0 < value < 1.0:
+            problem = f"{a}.{b} = {value!r:.40}: must be a number above -1 and below 1"
         elif pairs.get((b, a), value) != value:
             problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"
         if problem:

@@ -142,11 +142,10 @@ def sobol_indices(
             attrs = {"long_name": f"{text} of: {meaning}", "units": "1"}
             data[f"{name}_{key}"] = (*over, "input"), rows if over else rows[0], attrs
     if not data:
-        raise ParameterError(
-            "summaries",
-            "; ".join(refused),
-            "quantities that every motion has and that vary: choose others, or a later t",
-        )
+        found = "; ".join(refused)
+        allowed = "quantities that every motion has and that vary, or other times in t"
+        sentence = f"no quantity of summaries has Sobol indices: {found}; give {allowed}"
+        raise ParameterError("summaries", found, allowed, sentence)
     coordinates = {
         "t": ("t", run.t, column_attributes("t", run.si)),
         "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
@@ -178,8 +177,11 @@ def _independent_inputs(inputs: Inputs) -> Names:
             "the run file", "has no uncertain input", "one with distributions or columns of files"
         )
     if inputs.correlated:
-        allowed = "left out: Sobol indices are defined for independent inputs only"
-        raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
+        raise described_error(
+            "[correlation]",
+            f"relates the inputs {', '.join(inputs.correlated)}",
+            "left out: Sobol indices are defined for independent inputs only",
+        )
     for file, columns in inputs.joint.items():
         if len(columns) > 1:
             names = (
@@ -189,7 +191,7 @@ def _independent_inputs(inputs: Inputs) -> Names:
             )
             allowed = "distributions, or columns of different files: Sobol indices are defined for "
             allowed += "independent inputs only"
-            raise ParameterError(", ".join(names), f"columns of {file}", allowed)
+            raise described_error(", ".join(names), f"are columns of one file, {file}", allowed)
     return inputs.uncertain
 
 
@@ -279,7 +281,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 
     found = np.full((len(_INDICES), len(values) - 2), np.nan)
     if missing := np.count_nonzero(~np.isfinite(values)):
-        return found, f"{missing} of {values.size} motions have no value"
+        return found, f"no value in {missing} of {values.size} motions"
     if not values.std() > noise:
         return found, "varies by no more than the error of integration, which rtol limits"
     random = np.random.default_rng(seed)

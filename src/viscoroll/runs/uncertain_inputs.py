@@ -445,7 +445,10 @@ class _Reader:
             interval = (
                 f"truncate = {cut!r:.40}" if "truncate" in table else f"support [{low:g}, {high:g}]"
             )
-            raise self.fault(number, f"{interval}: must be [low, high] with a probability above 0")
+            allowed = "[low, high] with low < high"
+            if cut[0] < cut[1]:
+                allowed = f"where the distribution has draws (its median is {law.median():g})"
+            raise self.fault(number, f"{interval}: must be {allowed}")
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: Named) -> Any:
@@ -467,11 +470,9 @@ class _Reader:
             key: law for key, law in vars(stats).items() if isinstance(law, stats.rv_continuous)
         }
         if not isinstance(name, str) or name not in laws:
+            known = "a continuous distribution of scipy.stats, as 'norm' or 'uniform'"
             near = suggestion(str(name), laws)
-            raise self.fault(
-                number,
-                f"distribution {name!r:.40} is not a continuous distribution of scipy.stats{near}",
-            )
+            raise self.fault(number, f"distribution = {name!r:.40}: must be {known}{near}")
         law = laws[name]
         shapes = law.shapes.split(", ") if law.shapes else []
         allowed = ("distribution", *shapes, "loc", "scale", "truncate")
@@ -483,13 +484,11 @@ class _Reader:
                     number, f"{key} = {value!r:.40}: must be a finite number without a unit"
                 )
         if missing := [shape for shape in shapes if shape not in parameters]:
-            raise self.fault(number, f"{name} also needs {', '.join(missing)}")
+            raise self.fault(number, f"{name} lacks these parameters: {', '.join(missing)}")
         frozen = law(**{key: float(value) for key, value in parameters.items()})
         # scipy returns NaN for parameters out of range, and raises nothing
         if not np.isfinite(frozen.ppf(0.5)):
-            raise self.fault(
-                number, f"scipy.stats.{name} does not allow these parameters (scale must be > 0)"
-            )
+            raise self.fault(number, f"{name} does not allow {parameters} (scale must be > 0)")
         return frozen
 
     def add_column(self, number: Input, table: Named) -> None:
@@ -517,7 +516,8 @@ class _Reader:
         file = table.get("file")
         column = table.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
-            raise self.fault(number, "must have the key distribution, or the keys file and column")
+            found = f"{'column' if isinstance(file, str) else 'file'} is missing or no text"
+            raise self.fault(number, f"{found}: give file and column, or distribution")
         where = f"column {column!r} of {file}"
         path = self.path.parent / file
         try:
@@ -537,10 +537,10 @@ class _Reader:
             raise self.fault(number, f"{where}: {problem}") from error
         # one entry for each file, however it is spelt
         columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
-        if columns and next(iter(columns.values())).size != values.size:
-            raise self.fault(
-                number, f"{where} is not as long as other columns used: give it a file of its own"
-            )
+        for name, other in columns.items():
+            if other.size != values.size:
+                found = f"{where} has {values.size} numbers, but {name} has {other.size}"
+                raise self.fault(number, f"{found} from this file: give it a file of its own")
         columns[number.name] = values
 
 
@@ -593,5 +593,5 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     wrong = ~np.isfinite(values)
     if wrong.any():
         row = int(wrong.argmax())
-        raise ValueError(f"has {values[row]} in row {row + 1}: must contain finite numbers")
+        raise ValueError(f"has {values[row]} as number {row + 1}: must contain finite numbers")
     return np.ascontiguousarray(values, np.float64)
