@@ -352,7 +352,7 @@ REFUSED = [
     *each(
         lambda made, alpha=None: vr.load_law(netcdf(made()), alpha),
         {
-            "left out | given.nc is not a law of several alpha": (law_file, 11.0),
+            "left out | given.nc has no range of alpha": (law_file, 11.0),
             "alpha = None: must be a number in [1, 2], the range of | --alpha LOW:HIGH": partial(
                 vr.tables.law, alpha=(1, 2)
             ),

@@ -127,8 +127,7 @@ class LawGrid:
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
         """Raise the OutOfTableError of a state that the caller has found to be outside the axes:
-        for V if |V| is beyond the fastest speed, else for delta, without
-        comparing delta with its axis.
+        for V if |V| is beyond the fastest speed, else for delta, which is not compared.
         V: speed in the unit of the grid, a number or an array of one; of V = 0 the error states an
             infinite or NaN delta, and numpy gives a RuntimeWarning.
         omega: angular velocity in the unit of the grid, likewise.
@@ -311,8 +310,9 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     # NaN where none is declared: no value equals it
     declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
     filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
-    _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
-    allowed = "another number, as this one marks a missing value, by the file or by custom"
+    allowed = "finite (a _FillValue or missing_value that the file declares is read as nan)"
+    _refuse_nodes(variable, ~np.isfinite(values), path, allowed)
+    allowed = "another number: the file, or custom, takes this one for a missing value"
     _refuse_nodes(variable, filled, path, allowed)
     # limits beyond which a file declares values as missing (CF conventions 1.11, section 2.5.1)
     about = variable.attrs
@@ -364,7 +364,7 @@ def check_nodes(table: Dataset, path: Any) -> None:
             rounding = _ROUNDING * np.abs(values).max()
             bad = (values < -rounding) | (values > high + rounding)
             allowed = f"in [0, {high:g}]" if high < np.inf else ">= 0"
-            allowed += ", as a moment that resists rolling" * (name in _MOMENTS)
+            allowed += ", as M resists rolling, by at most load times R" * (name in _MOMENTS)
             _refuse_nodes(table[name], bad, path, allowed)
     Q = table["Q"].transpose(..., "delta")
     allowed = f"at most {limit:.6g} in magnitude, the friction limit mu times load"

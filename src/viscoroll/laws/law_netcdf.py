@@ -183,7 +183,7 @@ def load_law(path: str | os.PathLike[str], alpha: float | None = None) -> Any:
     if content.attributes[KIND] != AXIS:
         if alpha is not None:
             raise ParameterError(
-                "alpha", describe_value(alpha), f"left out: {path} is not a law of several alpha"
+                "alpha", describe_value(alpha), f"left out: {path} has no range of alpha"
             )
         return parse_law(content, path)
     axis = parse_axis(content, path)

@@ -451,7 +451,7 @@ def load_material(path: FilePath, make: Any) -> Any:
     if seal_matches(pathlib.Path(path).read_bytes()) is None:
         raise FileError(
             path,
-            f"is cut, or was not written by viscoroll (it has no checksum at its end); {_REWRITE}",
+            f"is cut, or another program changed it (it has no checksum at its end); {_REWRITE}",
         )
     given: Any = about.get("given")
     if given not in _FORMS:

@@ -361,8 +361,8 @@ def several_tables_error(name: str, one: str) -> ParameterError:
     return described_error(
         name,
         "has several values, but where shear acts on the pressure the law is computed for one only",
-        f"{one}; or neglect this action of shear, by coupled=False of the roller (in a file: "
-        "coupled = false in [cylinder])",
+        f"{one}; or take the fast law, which neglects or approximates it, by coupled=False of "
+        "the roller (in a file: coupled = false in [cylinder])",
     )
 
 
