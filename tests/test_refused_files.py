@@ -54,7 +54,7 @@ REFUSED = [
             "file.toml | line 2 | E = inf | for a viscoelastic": RUBBER_FILE.replace(
                 "2.3e5", "inf"
             ),
-            "line 1: [material] T_epsilon and": "[material]\nE = 1\nnu = 0.5\nT_epsilon = 1.0",
+            "[material] has T_epsilon: T_eps": "[material]\nE = 1\nnu = 0.5\nT_epsilon = 1.0",
             "line 6: [material] temperature = 30 needs wlf or": RUBBER_FILE + "temperature = 30.0",
             "file.toml | temperature = -40.0 | °C, where the WLF shift is infinite": RUBBER_FILE
             + "wlf = { T0 = 20.0 }\ntemperature = -40.0",
@@ -71,9 +71,7 @@ REFUSED = [
             "given.nc | V = | shape (0,) | must be real numbers, at least one": OTHER_GRID.isel(
                 V=slice(0)
             ),
-            "is not a grid of a law, since it has neither the variable M": OTHER_GRID.drop_vars(
-                "M"
-            ),
+            "is not a grid of a law, since it has the | neither M (the": OTHER_GRID.drop_vars("M"),
             "must have V(V), delta(delta), Q(V, delta)": OTHER_GRID.assign(
                 Q=OTHER_GRID.Q.isel(V=0)
             ),
@@ -83,7 +81,7 @@ REFUSED = [
             "units of V = missing | m/s or a multiple of it, or 1 of a": OTHER_GRID.assign_coords(
                 V=OTHER_GRID.V.drop_attrs()
             ),
-            "grid of a law, since V is not a list of two or more increasing": OTHER_GRID.isel(
+            "grid of a law, since V = | must be two or more numbers, each la": OTHER_GRID.isel(
                 V=[0]
             ),
         },
@@ -120,7 +118,7 @@ REFUSED = [
             "line 2: [start] V0 is missing: give a number": lambda: read_run(
                 file('preset = "paper-section-5"\n[start]\nomega0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
             ),
-            "given.nc | law_schema 2, but viscoroll": lambda: of_grid(
+            "given.nc | law_schema = 2 (version | but viscoroll": lambda: of_grid(
                 law_file().assign_attrs(law_schema=2)
             ),
             "given.nc | its numbers do not match the checksum": lambda: of_grid(
@@ -129,17 +127,17 @@ REFUSED = [
             "given.nc: is damaged or was edited: | attribute material": lambda: of_grid(
                 law_file().assign_attrs(material="not TOML")
             ),
-            "attribute 'material' is missing; write the file again by vr.tables.save": lambda: [
+            "attribute 'material' is missing or | write the file again by vr.tables.save": lambda: [
                 netcdf(law_file(), without="material"),
                 of_materials(OF_LAW),
             ],
             "(its attribute viscoroll_table is 'other', that of a grid 'grid')": lambda: (
                 vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc")
             ),
-            "given.nc: is a grid or a result, not a material: give a file that": lambda: (
+            "given.nc: is not a material; it has the variables | : give a file": lambda: (
                 vr.Material.from_netcdf(netcdf(grid()))
             ),
-            "coordinate 'alpha' must be > 0 and increase strictly": lambda: vr.load_law(
+            "alpha = | must be > 0 and increase strictly": lambda: vr.load_law(
                 netcdf(OTHER_GRID.expand_dims(alpha=[3.0, 2.0])), alpha=2.5
             ),
             "is damaged": lambda: of_grid(
@@ -188,7 +186,7 @@ REFUSED = [
             ),
             "given = 'both': must be relaxation or creep": SOFT_DATA.assign_attrs(given="both"),
             "has a wrong value (nu = 0.7: must be in (-1, 0.5])": SOFT_DATA.assign(nu=0.7),
-            "schema is 'other', but must be 'viscoroll material 1'": SOFT_DATA.assign_attrs(
+            "schema = 'other', but a | 'viscoroll material 1'": SOFT_DATA.assign_attrs(
                 schema="other"
             ),
         },
@@ -231,7 +229,7 @@ REFUSED = [
     *files(
         run,
         {
-            "[base] base_E: material | table of the coupled solution | coupled = false in": (
+            "[base] base_E: material | but where shear acts on | coupled = false in": (
                 "rubber on steel",
                 "coupled = false",
                 "",

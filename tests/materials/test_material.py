@@ -150,9 +150,9 @@ def test_a_shift_is_not_stored_without_its_vertical_one(tmp_path):
         material = dataclasses.replace(STORED[0], shift=vr.WLF(T0=20.0), vertical_shift=vertical)
         with warnings.catch_warnings(record=True, action="always") as said:
             material.to_netcdf(tmp_path / "m.nc")
-        assert ["lacks a shift of the material" in str(one.message) for one in said] == [True] * (
-            shift is None
-        )
+        assert [
+            "lacks shift and vertical_shift of the material" in str(one.message) for one in said
+        ] == [True] * (shift is None)
         (tmp_path / "m.toml").write_text(material_as_toml(material))
         for name in ("m.nc", "m.toml"):
             assert read_materials(tmp_path / name)["material"].shift == shift

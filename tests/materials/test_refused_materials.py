@@ -80,7 +80,9 @@ REFUSED = [
             "delta = 1: must be within the table's range": (
                 lambda law: vr.law(law)([1e-3] * 2, [1e-2, 2e-2])
             ),
-            "a grid without mu, or without full slip": lambda law: PAPER.replace(material=law),
+            "material is a grid without | full slip at both ends of delta": lambda law: (
+                PAPER.replace(material=law)
+            ),
         },
     ),
     *each(
@@ -150,7 +152,7 @@ REFUSED = [
             ),
             "prony | one Prony series": lambda: vr.Material(1000000.0, 0.5, MANY),
             "high = 1.0 | >= low = 2": lambda: vr.Measured(2.0, 1.0, 0.0),
-            "M_error is not in pairs": lambda: vr.Measured(1.0, 2.0, 0.0, M_error=1.0),
+            "M_error = 1.0: must be pairs": lambda: vr.Measured(1.0, 2.0, 0.0, M_error=1.0),
             "the columns g_i, k_i, tau_i; g has shape | (1, 2)": lambda: vr.Material.abaqus(
                 10000000.0, 0.49, [[0.2, 0.1]]
             ),
@@ -285,7 +287,7 @@ REFUSED = [
         vr.tables.law,
         {
             "material = True (a truth value)": True,
-            "thickness of the cylinder is given | depends on load and radius": (
+            "thickness of a cover on the cylinder is given | depends on load and radius": (
                 RUBBER_COVER,
                 STEEL,
             ),
@@ -338,8 +340,8 @@ REFUSED = [
         {
             "other = <2 Prony series | of one material": {"other": MANY},
             "series | a Prony series of one material": {"series": MANY},
-            "nu has shape (2,) | a number, or a list: one for each thickness": {"nu": [0.3, 0.4]},
-            "thickness has shape (2, 1): must be a number, or a list: one for each cover": {
+            "nu has shape (2,): must be a number, as thickness": {"nu": [0.3, 0.4]},
+            "thickness has shape (2, 1): must be a number, or one number for each cover": {
                 "thickness": [[1.0], [2.0]]
             },
         },
@@ -362,7 +364,7 @@ REFUSED = [
     *each(
         lambda made, alpha=None: vr.load_law(netcdf(made()), alpha),
         {
-            "left out | given.nc is the law of one material": (law_file, 11.0),
+            "left out | given.nc has no range of alpha": (law_file, 11.0),
             "alpha = None: must be a number in [1, 2], the range of | --alpha LOW:HIGH": partial(
                 vr.tables.law, alpha=(1, 2)
             ),
@@ -375,7 +377,7 @@ REFUSED = [
         vr.Bodies,
         {
             "shapes | cylinder (2,), base (3,)": (MANY, vr.Prony([[1.0]] * 3, [1.0])),
-            "the pair has 80 terms in both series: must be one of at most 64": (
+            "cylinder and base have 80 Prony terms together: must be series of at most 64": (
                 *[vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0))] * 2,
                 0.1,
             ),

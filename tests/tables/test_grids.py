@@ -220,7 +220,7 @@ WRONG = [
         "Q",
         np.s_[7, 5],
         lambda Q: FILL,
-        "68386869e+36 at index 7 of V, 5 of delta: must be another number",
+        "68386869e+36 N m-1 at index 7 of V, 5 of delta: must be another number",
     ),
     ("M", np.s_[3], lambda M: -M, "at index 3 of V: must be in [0, "),
     ("M", np.s_[1], lambda M: 1e10, "at index 1 of V: must be in [0, "),
@@ -257,7 +257,9 @@ def test_declared_invalid_values_are_refused_and_six_digits_are_read(tmp_path):
         refused(partial(vr.load_law, path), "index 0 of V: must be in [1, 2]", error=vr.FileError)
     other.Q[1, 2] = np.nan
     other.to_netcdf(path, engine="h5netcdf", encoding={"Q": {"_FillValue": -7.5}})
-    refused(partial(vr.load_law, path), "Q = nan at index 1 of V, 2 of delta", error=vr.FileError)
+    refused(
+        partial(vr.load_law, path), "Q = nan N/m at index 1 of V, 2 of delta", error=vr.FileError
+    )
 
 
 # --- formats of other programs ---

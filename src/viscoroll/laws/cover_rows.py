@@ -279,7 +279,8 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
             "thickness/l0",
             f"{thickness:.3g}",
             f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long; "
-            "take a thicker layer or a smaller load (l0: contact length at rest of half-spaces)",
+            "take a thicker layer or a smaller load (l0: contact length at rest of half-spaces of "
+            "the same materials)",
         )
     if not modes.series.a.size:
         L, lam = slow_limit[_LIMITED[:2]]
@@ -452,7 +453,7 @@ def _find_length(
         "thickness/l0",
         f"{modes.cover.thinnest:g}",
         "larger, as no contact length was found that carries the load; take a thicker layer or a "
-        "smaller load (l0: contact length at rest of half-spaces)",
+        "smaller load (l0: contact length at rest of half-spaces of the same materials)",
     )
 
 

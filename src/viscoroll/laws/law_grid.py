@@ -100,10 +100,16 @@ class LawGrid:
         if self.kappa is not None and abs(kappa - self.kappa) > _ROUNDING * self.kappa:
             raise ParameterError("kappa", kappa, f"{self.kappa:g}, the R/l0 of the grid")
         if not self.rows.slips:
+            fault = (
+                "the global attribute mu"
+                if math.isinf(self.rows.limit)
+                else "full slip (|Q| = mu times load) at the first and the last delta of each V"
+            )
             raise described_error(
                 "material",
-                "is a grid without mu, or without full slip at the first and the last delta",
-                "a grid with both, as the material of a Scene; vr.law takes any grid",
+                f"is a grid without {fault}",
+                "one with mu and full slip at both ends of delta, as the material of a Scene; "
+                "vr.law takes any grid",
             )
         # rows hold M in N for kappa = 1: a table has kappa M/(P R)
         of_moments = kappa / (self.load * self.R)
@@ -121,8 +127,7 @@ class LawGrid:
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
         """Raise the OutOfTableError of a state that the caller has found to be outside the axes:
-        for V if |V| is beyond the fastest speed, else for delta, without
-        comparing delta with its axis.
+        for V if |V| is beyond the fastest speed, else for delta, which is not compared.
         V: speed in the unit of the grid, a number or an array of one; of V = 0 the error states an
             infinite or NaN delta, and numpy gives a RuntimeWarning.
         omega: angular velocity in the unit of the grid, likewise.
@@ -223,8 +228,9 @@ def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGr
     if "M" not in names and not {"M_half_space", "M_cylinder"} <= set(names):
         raise _no_law(
             path,
-            "it has neither the variable M (the rolling moment at each V) nor both M_half_space "
-            "and M_cylinder: add M, or rename the moment to M",
+            f"it has the variables {', '.join(map(str, table.variables)):.80}, but neither M (the "
+            "rolling moment at each V) nor both M_half_space and M_cylinder: add M, or rename the "
+            "moment to M",
         )
     for name in names:
         variable = table[name]
@@ -235,7 +241,8 @@ def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGr
             raise _no_law(path, found)
         refuse_filled(variable, path)
         if name in ("V", "delta") and not (variable.size > 1 and increases(variable.values)):
-            raise _no_law(path, f"{name} is not a list of two or more increasing numbers")
+            found = f"{name} = {describe_value(variable.values)}: must be two or more numbers"
+            raise _no_law(path, f"{found}, each larger than the one before")
     with _told_of(path, table):
         table = _in_si(table)
         check_nodes(table, path)
@@ -284,6 +291,8 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
         first = np.argwhere(bad)[0]
         place = ", ".join(f"{n} of {dim}" for dim, n in zip(variable.dims, first))
         found = describe_value(variable.values[tuple(first)].item())
+        unit = str(variable.attrs.get("units", "1"))
+        found += f" {unit}" * (unit != "1")
         where = f"{variable.name} = {found} at index {place or '0'}"
         raise _no_law(path, f"{where}: must be {allowed}")
 
@@ -301,8 +310,10 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     # NaN where none is declared: no value equals it
     declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
     filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
-    _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
-    _refuse_nodes(variable, filled, path, "another number, as this one stands for a missing value")
+    allowed = "finite (a _FillValue or missing_value that the file declares is read as nan)"
+    _refuse_nodes(variable, ~np.isfinite(values), path, allowed)
+    allowed = "another number: the file, or custom, takes this one for a missing value"
+    _refuse_nodes(variable, filled, path, allowed)
     # limits beyond which a file declares values as missing (CF conventions 1.11, section 2.5.1)
     about = variable.attrs
     try:
@@ -313,13 +324,17 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
         # limits of packed numbers are packed too, and a negative factor exchanges them
         low, high = np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
     except (TypeError, ValueError) as error:
-        allowed = "two numbers, and valid_min and valid_max one each"
+        given = {name: about[name] for name in about if str(name).startswith("valid_")}
         raise _no_law(
-            path, f"the attribute valid_range of {variable.name} must be {allowed}"
+            path,
+            f"{variable.name} has {describe_value(given)}: valid_range must be two numbers, "
+            "valid_min and valid_max one each",
         ) from error
     margin = _ROUNDING * np.abs((low, high))
     invalid = (values < low - margin[0]) | (values > high + margin[1])
-    valid = f"in [{low:g}, {high:g}], beyond which the file declares values as missing"
+    valid = (
+        f"in [{low:g}, {high:g}], beyond which its valid_range, _min or _max declares it missing"
+    )
     _refuse_nodes(variable, invalid, path, valid)
 
 
@@ -349,16 +364,20 @@ def check_nodes(table: Dataset, path: Any) -> None:
             rounding = _ROUNDING * np.abs(values).max()
             bad = (values < -rounding) | (values > high + rounding)
             allowed = f"in [0, {high:g}]" if high < np.inf else ">= 0"
+            allowed += ", as M resists rolling, by at most load times R" * (name in _MOMENTS)
             _refuse_nodes(table[name], bad, path, allowed)
     Q = table["Q"].transpose(..., "delta")
-    allowed = f"at most {limit:.6g} in magnitude, the friction limit mu P"
+    allowed = f"at most {limit:.6g} in magnitude, the friction limit mu times load"
     _refuse_nodes(Q, np.abs(Q.values) > limit * (1.0 + _ROUNDING), path, allowed)
     noise = _NOISE * np.abs(Q.values).max()
     # + 0 Q: in the shape of Q
     creep = (table["delta"] - table.get("delta_0", 0.0) + 0.0 * Q).transpose(*Q.dims).values
     against = Q.values * np.sign(creep) < -noise
     against[..., 1:-1] = False  # of a layer without delta_0 the sign changes beside delta = 0
-    allowed = "of the same sign as delta, as a roller with omega R > V is driven forward by Q > 0"
+    allowed = (
+        "of the same sign as delta (as delta - delta_0, if the grid has delta_0), since a roller "
+        "with omega R > V is driven forward by Q > 0"
+    )
     _refuse_nodes(Q, against, path, allowed)
     if "M" in table.variables and "delta" in table["M"].dims:
         M = table["M"].transpose(*Q.dims)
@@ -395,7 +414,7 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
         return table
     nodes = table["alpha"].values
     if not (nodes[0] > 0.0 and increases(nodes)):
-        raise FileError(path, "coordinate 'alpha' must be > 0 and increase strictly")
+        raise _no_law(path, f"alpha = {describe_value(nodes)}: must be > 0 and increase strictly")
     wanted = np.log(check_alpha(alpha, nodes[[0, -1]], path))
     if nodes.size == 1:
         return table.squeeze("alpha")
@@ -427,7 +446,7 @@ def _in_si(table: Dataset) -> Dataset:
             elif dimensionless:
                 allowed += ", as the unit of V is 1"
             raise ParameterError(f"attribute units of {name}", unit, allowed) from error
-        table = table.assign({name: table[name].astype(float) * by})
+        table = table.assign({name: (table[name].astype(float) * by).assign_attrs(units=wanted)})
     if dimensionless:
         return table.assign_attrs(R=1.0, load=1.0, scale=DIMENSIONLESS)
     # the load is needed only to make a limit of mu

@@ -81,7 +81,8 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
         raise ParameterError(
             "material",
             describe_value(material),
-            "a Material, a Cylinder, a Prony, Bodies, or the number alpha",
+            "a Material, a Cylinder, a Prony, Bodies, or a number alpha (instantaneous divided by "
+            "long-time modulus)",
         )
     return law_table(check_number("alpha", material, low=1.0, high=HIGHEST_ALPHA))
 
@@ -182,7 +183,7 @@ def load_law(path: str | os.PathLike[str], alpha: float | None = None) -> Any:
     if content.attributes[KIND] != AXIS:
         if alpha is not None:
             raise ParameterError(
-                "alpha", describe_value(alpha), f"left out: {path} is the law of one material"
+                "alpha", describe_value(alpha), f"left out: {path} has no range of alpha"
             )
         return parse_law(content, path)
     axis = parse_axis(content, path)
@@ -207,7 +208,8 @@ def parse_law(content: Content, path: Any) -> LawTable:
         raise FileError(
             path,
             "has the laws of a range of alpha, not of one material: in Python give for example "
-            "vr.tables.law(vr.load_law(path, alpha=11.0)); or make a law of a file with that alpha",
+            "vr.tables.law(vr.load_law(path, alpha=11.0)); or write the law of one alpha by "
+            "`viscoroll tables law` of a file with this alpha in [scene]",
         )
     with _refuse_incomplete(path):
         given, pair = _parse_bodies(attributes["material"], path)

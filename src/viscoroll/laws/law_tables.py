@@ -458,7 +458,9 @@ def law_axis(low: float, high: float) -> LawAxis:
     """
     low, high = (check_number("alpha", value, low=1.0, high=HIGHEST_ALPHA) for value in (low, high))
     if not low < high:
-        raise ParameterError("alpha", f"{low:g} to {high:g}", "two numbers, the lower one first")
+        raise ParameterError(
+            "alpha", f"{low:g} to {high:g}", "two different numbers, the lower one first"
+        )
     first = math.frexp(low)[1] - 1
     pieces = []
     for octave in range(first, math.ceil(math.log2(high))):

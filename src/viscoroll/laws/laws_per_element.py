@@ -276,7 +276,8 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
                 reason = (
                     f"at least {2.0 ** (exponent + 1.0)} in a call with several thicknesses or "
                     "loads, as laws are interpolated between them: make one call for each, or take "
-                    "a thicker layer or a smaller load (l0: contact length at rest of half-spaces)"
+                    "a thicker layer or a smaller load (l0: contact length at rest of half-spaces "
+                    "of the same materials)"
                 )
                 raise ParameterError("thickness/l0", f"{thin:.6g}", reason) from error
     # for each cover the address of the laws of its octave and their number of rows

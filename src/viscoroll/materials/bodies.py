@@ -101,7 +101,7 @@ class Bodies(OneOrMany):
                 raise ParameterError(
                     name,
                     describe_value(body),
-                    "a Prony series, as vr.Prony([2.0], [0.1]), of one body or of n bodies",
+                    "a Prony series, as vr.Prony([2.0], [0.1]); a Material is for vr.Cylinder",
                 )
         if self.poisson is not None:
             values = check_both("poisson", self.poisson, above=-1.0, high=0.5)
@@ -109,15 +109,15 @@ class Bodies(OneOrMany):
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
             raise shape_error(
-                "share", share.shape, "a number, or a list with one number for each pair"
+                "share", share.shape, "a number, or a list with one number for each pair of bodies"
             )
         vars(self)["shape"] = broadcast_shape(**bodies, share=share)
         modes = sum(body.E.shape[-1] for body in bodies.values())
         if self.shape and modes > MOST_MODES:
             raise described_error(
-                "the pair",
-                f"has {modes} terms in both series",
-                f"one of at most {MOST_MODES} terms",
+                "cylinder and base",
+                f"have {modes} Prony terms together",
+                f"series of at most {MOST_MODES} terms together",
             )
         vars(self)["share"] = read_only(share)
 
@@ -206,10 +206,9 @@ class Bodies(OneOrMany):
 
     @cached_property
     def half_space_weights(self) -> Floats:
-        """Return the half-space's part of each creep mode of :attr:`total`, divided by the mode's
-        strength, slowest mode first.
+        """Return the half-space's part of each creep mode of :attr:`total`, slowest mode first.
 
-        Returns an array (..., modes), kept for later calls, of numbers from 0 to 1, dimensionless:
+        Returns an array (..., modes), kept for later calls, of fractions from 0 to 1 of strengths:
         1 - share for two equal series, else 0 for a mode without strength.
         Raises ParameterError as :attr:`total` does.
         """
@@ -420,20 +419,21 @@ class Cover(Bodies):
         part = check_number("part", part, above=0.0, high=1.0)
         given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
         if given.ndim > 1:
-            raise shape_error("thickness", given.shape, "a number, or a list: one for each cover")
+            raise shape_error("thickness", given.shape, "a number, or one number for each cover")
+        like = f"of shape {given.shape}, as thickness" if given.ndim else "a number, as thickness"
         if ratio.shape not in ((), given.shape):
-            raise shape_error("nu", ratio.shape, "a number, or a list: one for each thickness")
+            raise shape_error("nu", ratio.shape, "a number or " * given.ndim + like)
         if other_thickness is not None:
             second = check_array("other_thickness", other_thickness, above=0.0, high=_THICKEST)
             if part == 1.0:
                 raise ParameterError(
                     "other_thickness",
                     second,
-                    "left out, or given with part < 1: at part = 1, the default, the other body "
-                    "is rigid",
+                    "left out, or given with part < 1 (part of the layer in the compliance of both "
+                    "bodies); part = 1, the default, means that the other body is rigid",
                 )
             if second.shape != given.shape:
-                raise shape_error("other_thickness", second.shape, f"{given.shape}, as thickness")
+                raise shape_error("other_thickness", second.shape, like)
             # laws are interpolated as functions of one thickness
             proportion = second / given
             if np.ptp(proportion) > _SAME_RATIO * np.max(proportion):

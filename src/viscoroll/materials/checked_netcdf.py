@@ -49,6 +49,8 @@ CHECKSUM = "sha256_of_numbers"
 REMEDY = "write the file again by vr.tables.save or `viscoroll tables law`"
 #: what a user can do about such a file of a material
 _REWRITE = "write the file again by Material.to_netcdf"
+#: what a user can do who named another file
+_GIVE = "give a file that Material.to_netcdf wrote"
 #: largest file that is read, bytes; laws have less than 10 MB
 _MOST_BYTES = 1 << 27
 #: first bytes of netCDF-4
@@ -196,7 +198,9 @@ def is_law(path: FilePath) -> bool:
     Raises FileError as :func:`read_content`.
     """
     content = read_content(
-        path, "file of a material or of a contact law", f"{_REWRITE}, or a law by vr.tables.save"
+        path,
+        "file of a material (of Material.to_netcdf) or of a contact law (of vr.tables.save)",
+        f"{_REWRITE}, or a law by vr.tables.save",
     )
     return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 
@@ -211,7 +215,9 @@ def read_law(path: FilePath) -> Content:
     netCDF, is no law, is of another schema, lacks a variable, or has one that is not numeric.
     """
     content = read_content(
-        path, "law (made by `viscoroll tables law`) or a grid (`viscoroll tables build`)", REMEDY
+        path,
+        "contact law (of `viscoroll tables law`) or a grid (of `viscoroll tables build`)",
+        REMEDY,
     )
     check_law(content, path)
     return content
@@ -275,16 +281,23 @@ def check_law(content: Content, path: Any) -> None:
     if kind not in KINDS:
         raise FileError(
             path,
-            "is neither a law (of `viscoroll tables law`) nor a grid (of `viscoroll tables build`, "
-            "or of another program with the variables V, delta, Q and M)",
+            "is neither a contact law (of `viscoroll tables law`) nor a grid of one (of `viscoroll "
+            "tables build`, or of another program with the variables V, delta, Q and M); it has "
+            f"the variables {', '.join(numbers) or '(none)':.80}",
         )
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
-        problem = f"has law_schema {schema!s:.20}, but viscoroll {__version__} reads only {VERSION}"
+        problem = (
+            f"has the attribute {SCHEMA} = {schema!s:.20} (version of the file format), but "
+            f"viscoroll {__version__} reads only {VERSION}"
+        )
         raise FileError(path, f"{problem}; {REMEDY}, or use the version of viscoroll that wrote it")
     for name in ("title", "source", "material")[: 2 if kind == AXIS else 3]:
         if not isinstance(attributes.get(name), str):
-            raise FileError(path, f"is incomplete: its attribute {name!r} is missing; {REMEDY}")
+            raise FileError(
+                path,
+                f"is incomplete: its attribute {name!r} is missing or is not a text; {REMEDY}",
+            )
     try:
         found = checksum(numbers, kind)
     except KeyError as error:
@@ -296,8 +309,8 @@ def check_law(content: Content, path: Any) -> None:
     if found != attributes.get(CHECKSUM):
         raise FileError(
             path,
-            "is damaged or was edited: its numbers do not match the checksum in the file; "
-            f"{REMEDY}",
+            "is damaged or was edited: its numbers do not match the checksum in its attribute "
+            f"{CHECKSUM}; {REMEDY}",
         )
 
 
@@ -379,12 +392,18 @@ def write_material(material: Any, path: FilePath) -> None:
     does not hold (:func:`shifts_as_toml`).
     """
     data = material_as_dataset(material)
-    shifts = (material.shift, material.vertical_shift)
-    if len(data.attrs["shifts"].splitlines()) < sum(shift is not None for shift in shifts):
+    lost = [
+        name
+        for name, sign in (("shift", "T0"), ("vertical_shift", "entropic"))
+        if getattr(material, name) is not None and sign not in data.attrs["shifts"]
+    ]
+    if lost:
         warn_of_model(
-            f"{path} lacks a shift of the material: files can store WLF or Arrhenius as shift, and "
-            "'entropic' as vertical_shift.  Give others again after reading, by dataclasses.replace"
-            "(material, shift=...), or fit WLF or Arrhenius (ShiftFactors.wlf, .arrhenius)"
+            f"{path} lacks {' and '.join(lost)} of the material: files hold only vr.WLF and "
+            "vr.Arrhenius as shift, 'entropic' as vertical_shift, and no shift beside another "
+            "vertical_shift.  After reading, add what is missing by dataclasses.replace(material, "
+            "...).  The shift of a fit (vr.ShiftFactors) can be replaced before writing by the law "
+            "that its .wlf() or .arrhenius() fits"
         )
     write_dataset(data, path, sealed=True)
 
@@ -418,24 +437,21 @@ def load_material(path: FilePath, make: Any) -> Any:
     numbers, about = read_content(path, "material that Material.to_netcdf wrote", _REWRITE)
     if str(about.get(KIND)) in KINDS:
         raise FileError(
-            path, f"is a contact law, not a material: read it by vr.load_law, or {_REWRITE}"
+            path, f"is a contact law, not a material: read it by vr.load_law, or {_GIVE}"
         )
-    if {"V", "Q"} <= numbers.keys():
+    if "schema" not in about:
+        found = ", ".join(numbers) or "(none)"
+        raise FileError(path, f"is not a material; it has the variables {found:.80}: {_GIVE}")
+    if about["schema"] != _SCHEMA:
         raise FileError(
             path,
-            "is a grid or a result, not a material: give a file that Material.to_netcdf wrote",
-        )
-    if about.get("schema") != _SCHEMA:
-        found = f"{about['schema']!r:.40}" if "schema" in about else "missing"
-        raise FileError(
-            path,
-            f"is no material of this version of viscoroll: its attribute schema is {found}, but "
-            f"must be {_SCHEMA!r}; {_REWRITE}",
+            f"has the attribute schema = {about['schema']!r:.40}, but a material of viscoroll "
+            f"{__version__} has {_SCHEMA!r}: {_GIVE} in this version",
         )
     if seal_matches(pathlib.Path(path).read_bytes()) is None:
         raise FileError(
             path,
-            f"is cut, or was not written by viscoroll (it has no checksum at its end); {_REWRITE}",
+            f"is cut, or another program changed it (it has no checksum at its end); {_REWRITE}",
         )
     given: Any = about.get("given")
     if given not in _FORMS:

@@ -462,9 +462,9 @@ def _warn_of_low_poisson(G_inf: float, G: Floats, K_inf: float, K: Floats, tau: 
     lowest = np.min(_poisson(G_inf + left @ G, K_inf + left @ K))
     if lowest < _LEAST_POISSON:
         warn_of_model(
-            f"shear and bulk terms give Poisson's ratio {lowest:.3g} at some time, and no rubber "
-            f"has less than {_LEAST_POISSON:g}: check that both are fractions of moduli (abaqus, "
-            "ansys), or both moduli in Pa (comsol, lsdyna)"
+            f"terms of shear and bulk give Poisson's ratio {lowest:.3g} at some time, but solid "
+            f"rubber has at least {_LEAST_POISSON:g}: check that both are fractions of moduli "
+            "(abaqus, ansys), or both moduli in Pa (comsol, lsdyna, there with bulk= too)"
         )
 
 
@@ -519,7 +519,10 @@ def _long_time_shear(
             "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0",
         )
     name, value = given.popitem()
-    named = {"G0": "long-time modulus G0 - sum of G", "beta = 0": "G of beta = 0 (long times)"}
+    named = {
+        "G0": "G0 - sum of G (long-time shear modulus, Pa)",
+        "beta = 0": "sum of G with beta = 0 (long-time shear modulus, Pa)",
+    }
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
 

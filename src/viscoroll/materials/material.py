@@ -112,7 +112,11 @@ class Material(FromPrograms):
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             values["E"] = math.inf
             if self.prony.alpha > 1.0:
-                raise ParameterError("E", self.E, "finite for a viscoelastic body (inf: rigid)")
+                raise ParameterError(
+                    "E",
+                    self.E,
+                    "finite for a viscoelastic body; give a rigid one no series or times",
+                )
             if self.thickness is not None:
                 raise ParameterError("thickness", self.thickness, "left out for a rigid body")
         else:
@@ -298,7 +302,7 @@ class Material(FromPrograms):
         >>> rubber.at(20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=-10.0)) == rubber
         True
         """
-        allowed = "given to the Material or to at(), as vr.WLF(...), vr.Arrhenius(...)"
+        allowed = "vr.WLF(...) or vr.Arrhenius(...), given to at() or to the Material,"
         shift = _check_shift("shift", self.shift if shift is None else shift, allowed)
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
@@ -319,8 +323,7 @@ class Material(FromPrograms):
         )
 
     def storage(self, omega: ArrayLike) -> Any:
-        """Return the storage modulus E' in tension, which rises from E at omega = 0 to the
-        instantaneous modulus.
+        """Return the storage modulus E' in tension, from E at omega = 0 to the instantaneous one.
 
         It is E (1 + sum E_i x_i^2/(1 + x_i^2)) with x_i = omega tau_i T_ref.  Of a material
         imported with bulk terms unlike those of shear the series is that of E/(1 - nu^2).
@@ -410,8 +413,7 @@ class Material(FromPrograms):
         return loss / storage
 
     def relaxation(self, t: ArrayLike) -> Any:
-        """Return the tensile relaxation modulus E(t), which falls from the instantaneous modulus at
-        t = 0 to E.
+        """Return the tensile relaxation modulus E(t), from the instantaneous one at t = 0 to E.
 
         Of a material imported with bulk terms unlike those of shear it is E times the series of
         E/(1 - nu^2).
@@ -499,10 +501,9 @@ class Material(FromPrograms):
         """Return what the HTML of a notebook shows: a title, and a line for each property.
 
         Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value
-        and unit as texts, numbers to six digits): E, instantaneous modulus, nu, number of modes,
-        T_ref, relaxation times in s, density, thickness, temperature, measured band.  Properties
-        that are None are left out, as are the relaxation times of an elastic material; of these the
-        longest and the shortest are shown, in this order, to three digits.
+        and unit as texts, numbers to six digits).  Properties that are None are left out, as are
+        the relaxation times of an elastic material; of these the longest and the shortest are
+        shown, in this order, to three digits.
         """
         times = self.prony.tau * self.T_ref
         values = [
@@ -588,9 +589,8 @@ class Material(FromPrograms):
 
 
 def _check_shift(name: str, shift: Any, allowed: str) -> Any:
-    """Return the ``shift`` of the argument ``name``; raise ParameterError where it cannot be
-    called.  The words ``allowed`` say what is allowed beside a function.
-    """
+    """Return the ``shift`` of the argument ``name``; raise ParameterError if it cannot be called.
+    The words ``allowed`` say what is allowed beside a function."""
     if not callable(shift) or isinstance(shift, type):
         raise ParameterError(
             name,

@@ -366,13 +366,14 @@ def _make_material(path: Any, name: str, given: dict[str, Any]) -> Material:
     if series := parse_series(path, name, forms):
         given["prony"] = series
     if times := given.keys() & {"T_epsilon", "T_sigma"}:
-        if len(times) == 1 or given.keys() & {"T_ref", "prony"}:
+        others = given.keys() & {"T_ref"} | forms.keys()
+        if len(times) == 1 or others:
             raise section_error(
                 path,
                 name,
                 "",
-                "T_epsilon and T_sigma (in s; a standard linear solid) must both be given, and "
-                "T_ref, prony and creep left out",
+                f"has {', '.join(sorted(times | others))}: T_epsilon and T_sigma (in s; a standard "
+                "linear solid) must both be given, and T_ref, prony and creep left out",
             )
         return Material.sls(**given)
     return Material(**given)

@@ -23,6 +23,7 @@ from ..core import (
     check_array,
     check_number,
     check_text,
+    describe_value,
     described_error,
     warn_of_model,
 )
@@ -71,14 +72,12 @@ class _ShiftLaw:
             raise ParameterError(
                 "temperature",
                 temperature,
-                f"above T0 - C2 = {self.pole} °C, where the WLF shift is infinite",
+                f"above T0 - C2 = {self.pole:g} °C, where the WLF shift is infinite",
             )
         # the difference of the reciprocals, without cancellation near T0
         exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
         if not abs(exponent) < 700.0:
-            allowed = (
-                f"nearer to T0 = {self.T0} °C: the shift factor exp({exponent:.3g}) is out of range"
-            )
+            allowed = f"nearer to T0 = {self.T0} °C: the factor exp({exponent:.3g}) is out of range"
             raise ParameterError("temperature", temperature, allowed)
         return math.exp(exponent)
 
@@ -218,7 +217,8 @@ class ShiftFactors:
         T = check_array("temperature", self.temperature, unit="degC", above=ABSOLUTE_ZERO)
         a_T = check_array("a_T", self.a_T, above=0.0)
         if T.ndim != 1 or not T.size or T.shape != a_T.shape or (np.diff(T) <= 0.0).any():
-            raise described_error("temperature", f"= {T}", "ascending, with one a_T for each")
+            found = f"= {T}, and a_T has shape {a_T.shape}"
+            raise described_error("temperature", found, "an ascending list with one a_T for each")
         T0 = check_number("T0", self.T0, unit="degC", above=ABSOLUTE_ZERO)
         vars(self).update(temperature=tuple(T.tolist()), a_T=tuple(a_T.tolist()), T0=T0)
 
@@ -231,7 +231,7 @@ class ShiftFactors:
             raise ParameterError(
                 "temperature",
                 temperature,
-                f"from {low - NEAR} to {high + NEAR} °C, the range of the factors; for others use "
+                f"from {low - NEAR} to {high + NEAR} °C, the range of these factors; beyond, use "
                 "the WLF or Arrhenius law that .wlf() or .arrhenius() of these ShiftFactors fits",
             )
         if low == high:
@@ -340,10 +340,11 @@ class ShiftFactors:
         first to the last.
         """
         if len(self.a_T) < fewest:
-            allowed = f"a list of at least {fewest} temperatures, to fit this law"
+            allowed = f"a list of at least {fewest} (WLF needs 3 temperatures, Arrhenius 2)"
             raise described_error("temperature", f"has length {len(self.a_T)}", allowed)
         if not self.a_T[-1] < self.a_T[0]:
-            found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
+            low, *_, high = (f"{a_T:.3g} at {T:g} °C" for T, a_T in zip(self.temperature, self.a_T))
+            found = f"{low}, {high}"
             raise ParameterError("a_T", found, "shift factors that fall with temperature")
         return np.subtract(self.temperature, self.T0), np.log10(self.a_T)
 
@@ -356,7 +357,7 @@ class ShiftFactors:
         if abs(errors[worst]) > _FAR_OFF:
             warn_of_model(
                 f"the fitted {law} gives {10.0 ** errors[worst]:.3g} times the factor found at "
-                f"{self.temperature[worst]:g} °C: use the found factors in place of this law"
+                f"{self.temperature[worst]:g} °C: use the ShiftFactors themselves as shift"
             )
         return law
 
@@ -375,7 +376,7 @@ def check_celsius(name: str, temperature: Any) -> float:
     if not low <= found <= high:
         warn_of_model(
             f"{name} is outside {low:g} to {high:g} degrees Celsius: the number looks "
-            "like kelvin, or like a value that was converted twice"
+            "like kelvin, or like a value that was converted twice, but is taken as it is"
         )
     return found
 
@@ -386,9 +387,8 @@ def relative_shift(
     """Return the ratio of times at a temperature to those at a reference,
     a_T(temperature)/a_T(reference).
 
-    The ratio is the same whatever temperature the constants of the shift refer to: WLF and
-    Arrhenius keep their form when they are converted to another (J. D. Ferry, Viscoelastic
-    Properties of Polymers, 3rd ed., 1980, Ch. 11).
+    The ratio is the same whatever temperature the constants of a shift refer to: WLF and Arrhenius
+    keep their form (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
 
     shift: function of a temperature in degrees Celsius that returns a_T, a number, dimensionless,
         > 0.
@@ -424,7 +424,8 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
         raise ParameterError(
             "temperature",
             None,
-            "given to a Material with vertical_shift: the temperature at which E was measured",
+            "given",
+            "a Material with vertical_shift needs temperature=, in °C, at which E was measured",
         )
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
     factor, unit = (
@@ -501,8 +502,8 @@ class Measured:
         check_text("source", self.source)
         pairs = check_array("M_error", self.M_error, low=0.0)
         if pairs.size % 2 or not (np.diff(pairs.ravel()[::2]) > 0.0).all():
-            allowed = "pairs (transit frequency in 1/s, relative error of moment M), ascending"
-            raise described_error("M_error", "is not in pairs, or not sorted by frequency", allowed)
+            allowed = "pairs (transit frequency in 1/s, relative error of M), frequencies ascending"
+            raise ParameterError("M_error", describe_value(self.M_error), allowed)
         vars(self)["M_error"] = tuple(map(tuple, pairs.reshape(-1, 2).tolist()))
         if self.strain is not None:
             check_fields(self, "strain", unit="1")

@@ -90,20 +90,25 @@ class Pair:
                 )
         if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
             raise ParameterError(
-                "base", "rigid", "a deformable body, since material (the cylinder) is rigid"
+                "base",
+                "rigid",
+                "a deformable body, since material (the cylinder) is rigid (without base both are)",
             )
         if self.covered is not None and self.plane != "strain":
             raise ParameterError(
                 "plane", repr(self.plane), "'strain' where a material has a thickness"
             )
-        for body in self.bodies:
-            half_space = body.thickness is None and self.plane == "strain"
-            if body.nu_instant is not None and not half_space:
+        for name, body in zip(("material", "base"), self.bodies):
+            reason = "is in plane stress" if self.plane != "strain" else "has a thickness"
+            if body.nu_instant is not None and (
+                body.thickness is not None or self.plane != "strain"
+            ):
                 raise described_error(
                     "nu_instant",
-                    "is given (or follows from bulk terms unlike those of shear), but holds only "
-                    "for a half-space in plane strain",
-                    "left out, and the bulk terms too",
+                    f"of {name} is given (or follows from bulk terms unlike those of shear), but "
+                    f"{name} {reason}",
+                    "left out, and the bulk terms too: a Poisson's ratio that changes with time is "
+                    "possible only for a half-space in plane strain",
                 )
 
     @property
@@ -196,10 +201,10 @@ class Pair:
         """
         if self.covered is not None:
             raise described_error(
-                f"thickness of the {self.covered}",
-                "is given",
+                "thickness",
+                f"of a cover on the {self.covered} is given",
                 "left out here, since the contact law of a cover depends on load and radius too; "
-                "give a Cylinder of these materials, or a file with [cylinder]",
+                "or give a vr.Cylinder of these materials (in a file: add the section [cylinder])",
             )
         if self.like:
             return self.cylinder.prony
@@ -297,7 +302,8 @@ class Pair:
                 "material",
                 f"is the law of a cover with thickness/l0 = {cover.thickness:.6g}",
                 f"that for {format_value(own.thickness)}, which follows from load and R (l0: "
-                "contact length at rest of half-spaces); make the law again with this load and R",
+                "contact length at rest of half-spaces of the same materials); make the law again "
+                "with this load and R",
             )
 
     def refuse_coupled_ratios(self, law: Prony | Bodies | Cover, limit: float) -> None:
@@ -354,9 +360,9 @@ def several_tables_error(name: str, one: str) -> ParameterError:
     """
     return described_error(
         name,
-        "has several values, each of which needs its own table of the coupled solution",
-        f"{one}; or take the fast law, by coupled=False of the roller (in a file: coupled = "
-        "false in [cylinder])",
+        "has several values, but where shear acts on the pressure the law is computed for one only",
+        f"{one}; or take the fast law, which neglects or approximates it, by coupled=False of "
+        "the roller (in a file: coupled = false in [cylinder])",
     )
 
 

@@ -81,7 +81,7 @@ class OneOrMany:
 
     def __len__(self) -> int:
         if not self.shape:
-            raise TypeError("the Prony series of one material has no length and no index")
+            raise TypeError(f"a single {type(self).__name__} has no length and no index")
         return self.shape[0]
 
     def __bool__(self) -> bool:
@@ -195,7 +195,7 @@ class Prony(OneOrMany):
             raise ParameterError(
                 "sum of J",
                 f"{1.0 - rest.min()!s}",
-                "below 1, since 1 minus this sum is the instantaneous compliance, which is > 0",
+                "below 1; give each J divided by the long-time compliance (t = infinity)",
             )
         given = (
             1.0 / rest
@@ -203,7 +203,8 @@ class Prony(OneOrMany):
             else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
         )
         if given.shape not in ((), rest.shape):
-            raise shape_error("alpha", given.shape, "a number, or one for each material")
+            allowed = "a number" + f", or of shape {rest.shape}, one for each material" * rest.ndim
+            raise shape_error("alpha", given.shape, allowed)
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
@@ -506,8 +507,7 @@ def _check_modes(**given: ArrayLike) -> tuple[NDArray, NDArray]:
     material with most has; modes without strength are dropped or, of many materials, put after the
     others, where the times have no meaning.  Modes of equal times are one, with the sum of their
     strengths.
-    Raises ParameterError for numbers out of range, shapes that do not fit, more than
-    :data:`MOST_MODES` modes, and times that span more than :data:`LARGEST_TIME_RATIO`.
+    Raises ParameterError for what :class:`Prony` refuses, except for the sum of the strengths.
     """
     (of_strengths, strengths), (of_times, times) = given.items()
     values = check_array(of_strengths, strengths, low=0.0)
