@@ -77,7 +77,7 @@ class _ShiftLaw:
         # the difference of the reciprocals, without cancellation near T0
         exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
         if not abs(exponent) < 700.0:
-            allowed = f"nearer to T0 = {self.T0} °C: the factor exp({exponent:.3g}) is out of range"
+            allowed = f"nearer to T0 = {self.T0} °C: a_T = exp({exponent:.3g}) is out of range"
             raise ParameterError("temperature", temperature, allowed)
         return math.exp(exponent)
 
