@@ -440,8 +440,8 @@ def load_material(path: FilePath, make: Any) -> Any:
             path, f"is a contact law, not a material: read it by vr.load_law, or {_GIVE}"
         )
     if "schema" not in about:
-        found = ", ".join(numbers) or "(none)"
-        raise FileError(path, f"is not a material; it has the variables {found:.80}: {_GIVE}")
+        names = ", ".join(numbers) or "(none)"
+        raise FileError(path, f"is not a material; it has the variables {names:.80}: {_GIVE}")
     if about["schema"] != _SCHEMA:
         raise FileError(
             path,

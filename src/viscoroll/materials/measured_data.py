@@ -425,7 +425,7 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
             "temperature",
             None,
             "given",
-            "a Material with vertical_shift needs temperature=, in °C, at which E was measured",
+            "a Material with vertical_shift needs temperature= (in a file reference), °C, of its E",
         )
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
     factor, unit = (
