@@ -216,7 +216,8 @@ def read_law(path: FilePath) -> Content:
     """
     content = read_content(
         path,
-        "contact law (of `viscoroll tables law`) or a grid (of `viscoroll tables build`)",
+        "contact law (of `viscoroll tables law`) or a grid (of `viscoroll tables build`, or of "
+        "another program)",
         REMEDY,
     )
     check_law(content, path)

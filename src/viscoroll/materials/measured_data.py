@@ -415,8 +415,7 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
     temperature, reference: degrees Celsius; a reference of None is allowed only without a vertical
         shift.
     Returns the ratio, a float, dimensionless, > 0; 1.0 for None.
-    Raises ParameterError for a reference of None, and a shift that returns no finite positive
-    number.
+    Raises ParameterError for a reference of None, and a shift that returns no finite number > 0.
     """
     if shift is None:
         return 1.0
@@ -425,7 +424,8 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
             "temperature",
             None,
             "given",
-            "a Material with vertical_shift needs temperature= (in a file reference), °C, of its E",
+            "a Material with vertical_shift needs temperature= (in a file: reference =), in °C, at "
+            "which E was measured",
         )
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
     factor, unit = (
