@@ -318,7 +318,9 @@ REFUSED = each(
     {
         "given to the viscoelastic Material": vr.presets.RUBBER_CYLINDER,
         "rises with the temperature at": with_shift(lambda T: T + 300.0),
-        "temperature = None": with_shift(WLF, vertical_shift="entropic", temperature=None),
+        "with vertical_shift needs temperature=": with_shift(
+            WLF, vertical_shift="entropic", temperature=None
+        ),
         "load has shape": with_shift(WLF, thickness=0.03).replace(load=[1e4, 2e4]),
         "law would differ at each temperature": with_shift(
             WLF, vertical_shift="entropic", thickness=0.03

@@ -93,7 +93,7 @@ def test_a_poissons_ratio_that_changes_with_time():
         (dataclasses.replace(rubber, thickness=0.01), "strain"),
         (Solid(1e7, 0.45, rubber.prony, 1.0, np.array([0.01, 0.02]), rubber.nu_instant), "strain"),
     ):
-        with pytest.raises(vr.ParameterError, match="nu_instant is given"):
+        with pytest.raises(vr.ParameterError, match="nu_instant of material is given"):
             Pair(body, vr.Material.rigid(), plane)
 
 

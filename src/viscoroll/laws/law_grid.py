@@ -275,7 +275,9 @@ def _told_of(path: Any, table: Dataset) -> Iterator[None]:
             f"{name}({', '.join(map(str, each.dims))})" for name, each in table.variables.items()
         )
         allowed = "V(V), delta(delta), Q(V, delta) and M(V) or M(V, delta), perhaps over alpha too"
-        raise _no_law(path, f"it has {found}: must have {allowed}") from error
+        raise _no_law(
+            path, f"it has {found} (dimensions in brackets): must have {allowed}"
+        ) from error
 
 
 def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> None:
@@ -332,9 +334,7 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
         ) from error
     margin = _ROUNDING * np.abs((low, high))
     invalid = (values < low - margin[0]) | (values > high + margin[1])
-    valid = (
-        f"in [{low:g}, {high:g}], beyond which its valid_range, _min or _max declares it missing"
-    )
+    valid = f"in [{low:g}, {high:g}], as its attributes valid_range, valid_min, valid_max declare"
     _refuse_nodes(variable, invalid, path, valid)
 
 

@@ -404,7 +404,7 @@ class Cover(Bodies):
         where the law is computed.
         """
         if is_real(series):
-            series = series_of_alpha(check_number("alpha", series, low=1.0, high=HIGHEST_ALPHA))
+            series = series_of_alpha(check_number("series", series, low=1.0, high=HIGHEST_ALPHA))
         other = Prony.elastic() if other is None else other
         for name, body, also in (("series", series, "a number alpha"), ("other", other, "None")):
             if not isinstance(body, Prony) or body.shape:

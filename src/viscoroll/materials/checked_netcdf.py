@@ -216,7 +216,8 @@ def read_law(path: FilePath) -> Content:
     """
     content = read_content(
         path,
-        "contact law (of `viscoroll tables law`) or a grid (of `viscoroll tables build`)",
+        "contact law (of `viscoroll tables law`) or a grid (of `viscoroll tables build`, or of "
+        "another program)",
         REMEDY,
     )
     check_law(content, path)
@@ -440,8 +441,8 @@ def load_material(path: FilePath, make: Any) -> Any:
             path, f"is a contact law, not a material: read it by vr.load_law, or {_GIVE}"
         )
     if "schema" not in about:
-        found = ", ".join(numbers) or "(none)"
-        raise FileError(path, f"is not a material; it has the variables {found:.80}: {_GIVE}")
+        names = ", ".join(numbers) or "(none)"
+        raise FileError(path, f"is not a material; it has the variables {names:.80}: {_GIVE}")
     if about["schema"] != _SCHEMA:
         raise FileError(
             path,

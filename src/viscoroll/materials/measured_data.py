@@ -77,7 +77,7 @@ class _ShiftLaw:
         # the difference of the reciprocals, without cancellation near T0
         exponent = self.slope * (self.T0 - found) / (above * (self.T0 - self.pole))
         if not abs(exponent) < 700.0:
-            allowed = f"nearer to T0 = {self.T0} °C: the factor exp({exponent:.3g}) is out of range"
+            allowed = f"nearer to T0 = {self.T0} °C: a_T = exp({exponent:.3g}) is out of range"
             raise ParameterError("temperature", temperature, allowed)
         return math.exp(exponent)
 
@@ -415,8 +415,7 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
     temperature, reference: degrees Celsius; a reference of None is allowed only without a vertical
         shift.
     Returns the ratio, a float, dimensionless, > 0; 1.0 for None.
-    Raises ParameterError for a reference of None, and a shift that returns no finite positive
-    number.
+    Raises ParameterError for a reference of None, and a shift that returns no finite number > 0.
     """
     if shift is None:
         return 1.0
@@ -425,7 +424,8 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
             "temperature",
             None,
             "given",
-            "a Material with vertical_shift needs temperature=, in °C, at which E was measured",
+            "a Material with vertical_shift needs temperature= (in a file: reference =), in °C, at "
+            "which E was measured",
         )
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
     factor, unit = (

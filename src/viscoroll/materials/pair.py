@@ -92,7 +92,8 @@ class Pair:
             raise ParameterError(
                 "base",
                 "rigid",
-                "a deformable body, since material (the cylinder) is rigid (without base both are)",
+                "a deformable body, since material (the cylinder) is rigid; if base is left out, "
+                "material is that of both bodies",
             )
         if self.covered is not None and self.plane != "strain":
             raise ParameterError(
@@ -360,9 +361,9 @@ def several_tables_error(name: str, one: str) -> ParameterError:
     """
     return described_error(
         name,
-        "has several values, but where shear acts on the pressure the law is computed for one only",
-        f"{one}; or take the fast law, which neglects or approximates it, by coupled=False of "
-        "the roller (in a file: coupled = false in [cylinder])",
+        "has several values, but where shear acts on the pressure only one is possible",
+        f"{one}; or take the fast law, which neglects or approximates this action of shear, by "
+        "coupled=False of the roller (in a file: coupled = false in [cylinder])",
     )
 
 
