@@ -373,8 +373,8 @@ def _material_variables(materials: Any, count: int) -> Variables:
         found = along(
             "cover_thickness",
             materials.thickness,
-            "thickness of the cover divided by l0, the contact length at rest of half-spaces under "
-            "the same load",
+            "thickness of the cover divided by l0, the contact length at rest of half-spaces of "
+            "the same materials under the same load",
             **layer,
         )
         if np.ndim(materials.nu):
@@ -383,7 +383,11 @@ def _material_variables(materials: Any, count: int) -> Variables:
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")
-        | along("share", materials.share, "the cylinder's part of the sum of long-time compliances")
+        | along(
+            "share",
+            materials.share,
+            "long-time compliance of the cylinder, divided by the sum of those of both bodies",
+        )
     )
 
 
@@ -411,8 +415,12 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> Varia
             {"long_name": title + about, "units": "1"},
         )
         for name, values, about in (
-            ("strengths", strengths, f"strengths of {form} divided by the long-time {total}"),
-            ("times", times, f"times of {form} divided by T_ref"),
+            (
+                "strengths",
+                strengths,
+                f"strengths of the modes of {form}, divided by the long-time {total}",
+            ),
+            ("times", times, f"times of the modes of {form}, divided by T_ref, the unit of time"),
         )
     }
 

@@ -294,7 +294,7 @@ class Motion(RollResult):
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
             changes = f"{len(self.switches)}, the last to {last.regime} at {when}"
             if last.regime == "rest" and np.isnan(self.rest_time):
-                changes += ": V fell below the least double-precision number"
+                changes += ": V fell below the smallest number of double precision"
             rows.append(SummaryRow("changes of regime", changes))
         if self.reversals.size:
             rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
@@ -592,8 +592,8 @@ def roll(
     warn_of_speeds(problem.roller, start[0], motion.V)
     if not motion.success:
         warnings.warn(
-            f"roll: {motion.status.message}.  Outputs after this are NaN; the last state, if any, "
-            "is in the attribute message of the motion",
+            f"roll: {motion.status.message}.  Outputs at later times are NaN; the last state, "
+            "if any, is in the attribute message of the motion",
             RuntimeWarning,
             stacklevel=2,
         )
