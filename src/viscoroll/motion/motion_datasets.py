@@ -304,14 +304,15 @@ def describe_load(given: Any, unit: str) -> str:
     )
 
 
-def describe_values(t: NDArray, values: NDArray) -> str:
+def describe_values(t: NDArray, values: NDArray, unit: str) -> str:
     """Return a text on values over time: the first, the last that was reached, the largest between
     them with its time.
 
     t, values: times and values, (times,), at least one, in the unit of the roller; values are NaN
     at times that the motion did not reach.
-    Returns "first A, largest B (at t = T), last C", with B the value of the largest magnitude, the
-    first one of equal ones, and numbers to six digits; without it where it is printed like the
+    unit: unit of the times, "" of dimensionless ones.
+    Returns "first A, largest in magnitude B (at t = T UNIT), last C", with B the value of
+    the largest magnitude, the first one of equal ones, and numbers to six digits; without it where it is printed like the
     first or the last; the number alone for one time; "not reached" where all values are NaN.
     """
     reached = values[~np.isnan(values)]
@@ -321,7 +322,8 @@ def describe_values(t: NDArray, values: NDArray) -> str:
     first, most, last = (f"{value:.6g}" for value in (reached[0], values[peak], reached[-1]))
     if t.size == 1:
         return first
-    largest = "" if most in (first, last) else f"largest {most} (at t = {t[peak]:.6g}), "
+    when = f"t = {t[peak]:.6g} {unit}".rstrip()
+    largest = "" if most in (first, last) else f"largest in magnitude {most} (at {when}), "
     return f"first {first}, {largest}last {last}"
 
 

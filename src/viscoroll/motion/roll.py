@@ -278,7 +278,7 @@ class Motion(RollResult):
         """
         rows = [self._row_of_times()]
         rows += [
-            SummaryRow(name, describe_values(self.t, self[name]), self._unit(name))
+            SummaryRow(name, describe_values(self.t, self[name], self._unit("t")), self._unit(name))
             for name in ("V", "omega", "x")
         ]
         for name, given in self.drive.given.items():
@@ -331,9 +331,8 @@ class Motion(RollResult):
         times = output_times(t, self.scale)
         end = self._problem.end * self.scale["t"]
         if times[-1] > end and float(times[-1]) / self.scale["t"] > self._problem.end:
-            raise ParameterError(
-                "t", times[-1], f"within the motion, [0, {digits_beside(end, times[-1])}]"
-            )
+            within = f"within the motion, [0, {digits_beside(end, times[-1])}] {self._unit('t')}"
+            raise ParameterError("t", times[-1], within.rstrip())
         return integrate_motion(self._problem, times)
 
     @cached_property
