@@ -283,7 +283,7 @@ class Ensemble(RollResult):
         rows += [
             SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()
         ]
-        return f"Ensemble of {len(self)} motions", rows
+        return f"Ensemble of {len(self)} motion{'s' * (len(self) != 1)}", rows
 
     def to_xarray(self) -> Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status,

@@ -312,8 +312,9 @@ def describe_values(t: NDArray, values: NDArray, unit: str) -> str:
     at times that the motion did not reach.
     unit: unit of the times, "" of dimensionless ones.
     Returns "first A, largest in magnitude B (at t = T UNIT), last C", with B the value of
-    the largest magnitude, the first one of equal ones, and numbers to six digits; without it where it is printed like the
-    first or the last; the number alone for one time; "not reached" where all values are NaN.
+    the largest magnitude, the first one of equal ones, and numbers to six digits; without it where
+    it is printed like the first or the last; the number alone for one time; "not reached" where all
+    values are NaN.
     """
     reached = values[~np.isnan(values)]
     if not reached.size:
