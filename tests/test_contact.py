@@ -218,5 +218,5 @@ def test_slope_by_V_at_slight_creep():
 
 
 def test_a_field_that_was_not_computed_is_told():
-    with pytest.raises(AttributeError, match="'beta' was not computed; this result contains Q, M"):
+    with pytest.raises(AttributeError, match="'beta' is not in this result: it contains Q, M"):
         _ = SCENE.contact(1.0, delta=0.01, fields=("Q", "M")).beta

@@ -100,7 +100,7 @@ REFUSED += each(vr.roll, BOTH_KINDS, **ROLL) + each(vr.ensemble, BOTH_KINDS, **R
 REFUSED += each(
     vr.ensemble,
     {
-        "V0 or omega0 has shape (1, 2): must be a number or a vector (n,)": {"V0": [[1.0, 2.0]]},
+        "V0 has shape (1, 2): must be a number or a vector (n,)": {"V0": [[1.0, 2.0]]},
         "V0 = 1: must be left out (in Python None), or 2, the prescribed V at t = 0": {"V": 2.0},
         "V is empty: must be": {"V0": None, "V": []},
         "coordinates": {"V0": LABELLED, "omega0": LABELLED.assign_coords(run=["a", "c"])},

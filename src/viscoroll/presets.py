@@ -222,7 +222,9 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
     """
     check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
-        raise section_error(path, "", "", "one of preset, [scene] and [cylinder] must be given")
+        found = f"only {', '.join(content)}" if content else "no sections"
+        problem = f"describes no roller, as it has {found}: add preset, [scene] or [cylinder]"
+        raise section_error(path, "", "", problem)
     words = {"preset": "preset", "scene": "[scene]"}
     beside = " and ".join(words[name] for name in words if name in content)
     if "cylinder" in content and beside:
@@ -337,6 +339,6 @@ def read_law_source(path: FilePath) -> Any:
         return roller.alpha if roller.material is None else roller.material
     materials = read_materials(path)
     if "material" not in materials:
-        raise FileError(path, "section [material], [scene] or [cylinder] is missing")
+        raise FileError(path, "section [material], [scene] or [cylinder], or a preset, is missing")
     with as_section_error(path, "base"):
         return Pair(materials["material"], materials.get("base"))

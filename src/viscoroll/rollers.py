@@ -281,7 +281,9 @@ class Cylinder(Methods):
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
         if material is not None and solid:
-            raise described_error(solid, "given beside material", "left out, or leave out material")
+            raise described_error(
+                solid, "given beside material", "left out, or material left out instead"
+            )
         if material is None and missing:
             sentence = (
                 f"{missing} not given: give all of E, nu, T_epsilon and T_sigma, or a material"
@@ -540,8 +542,16 @@ class Cylinder(Methods):
         with np.errstate(all="ignore"):
             kappa = self.R / self.l0
             gamma = self.load * T**2 / (self.m * self.R)
-        check_array("kappa (R divided by the contact length at rest)", kappa, above=0.0)
-        check_array("gamma (load times T_ref^2, divided by m R)", gamma, above=0.0)
+        check_array(
+            "kappa (R divided by l0, the contact length at rest by load, R, E and nu)",
+            kappa,
+            above=0.0,
+        )
+        check_array(
+            "gamma (load times T_ref^2, divided by m R; T_ref: time of the material)",
+            gamma,
+            above=0.0,
+        )
         material = "alpha" if isinstance(law, float | np.ndarray) else "material"
         return Scene(
             kappa=kappa, gamma=gamma, mu=self.mu, j=self.j, coupled=self.coupled, **{material: law}

@@ -66,7 +66,7 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     values as it may.
     """
     monkeypatch.setattr(drive_pieces, "MOST", 5_000)
-    words = "torque is a function that piecewise polynomials cannot approximate near t = "
+    words = "torque is a function of t that could not be approximated near t = "
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
         refused(partial(ROLLER.roll, 0.5, 0.5, END, torque=function), words, "Schedule")

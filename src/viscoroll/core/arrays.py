@@ -173,7 +173,10 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
     if not has_no_unit(value):
         plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
-            sentence = f"{name} is a masked array: give {name}.filled(0.0), or {name}.compressed()"
+            sentence = (
+                f"{name} is a masked array: give {name}.compressed(), which leaves masked numbers "
+                f"out, or {name}.filled(0.0), which has 0 in their places"
+            )
             raise ParameterError(name, "a masked array", "plain", sentence)
     try:
         array = np.asarray(plain)
@@ -323,7 +326,9 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
         allowed = (
             f"a whole number >= {low}" if high == math.inf else f"a whole number in [{low}, {high}]"
         )
-        raise ParameterError(name, describe_value(value), allowed)
+        # 1e6 is whole, but no int
+        found = describe_value(value) + " (a float)" * isinstance(value, float)
+        raise ParameterError(name, found, allowed)
     return int(value)
 
 
@@ -480,7 +485,11 @@ def _environment_threads() -> int | None:
     with contextlib.suppress(ValueError):
         if (count := int(given)) >= 1:
             return count
-    raise ParameterError("VISCOROLL_THREADS", repr(given), "a whole number >= 1, or not set")
+    raise ParameterError(
+        "VISCOROLL_THREADS",
+        repr(given),
+        "a whole number >= 1, or this environment variable must not be set",
+    )
 
 
 def available_cores() -> int:

@@ -77,13 +77,13 @@ class Schedule:
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
         if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
-            allowed = "(k,) for k times, or (n, k) for n motions; both of the same k"
+            allowed = "(k,) for k >= 1 times, or (n, k) for n motions; both of the same k (and n)"
             raise ParameterError("shapes of a Schedule", shapes, allowed)
         for wrong, found, allowed in (
             (times[..., 1:] < times[..., :-1], "decrease after {:.6g}", "in ascending order"),
             (
                 times[..., 2:] == times[..., :-2],
-                "contain {:.6g} three times",
+                "contain {:.6g} more than twice",
                 "different times, or the same one twice for a jump",
             ),
         ):
@@ -519,10 +519,10 @@ def strip_labels(given: Named, units: HasUnits) -> tuple[Named, Labels | None]:
         if name not in labelled and not isinstance(value, Schedule) and np.ndim(value)
     ]
     if plain or (arrays and series):
-        names = ", ".join((*labelled, *plain))
-        raise ParameterError(
-            names, "mixed", "alike", f"{names} are mixed: give all from xarray, pandas or numpy"
-        )
+        mixed = (*labelled, *plain)
+        kinds = ", ".join(f"{name} ({type(given[name]).__name__})" for name in mixed)
+        sentence = f"{kinds} are mixed: give all as DataArray, as Series, or as arrays of numpy"
+        raise ParameterError(", ".join(mixed), "mixed", "alike", sentence)
     values, labels = _from_xarray(arrays) if arrays else _from_pandas(series)
     return given | values, labels
 
@@ -542,8 +542,7 @@ def _from_xarray(arrays: Named) -> tuple[Named, Labels]:
     Returns (name -> values, all of the broadcast shape, perhaps read-only views; :class:`Labels`,
     whose ``coords`` are the coordinates along an axis of every array; of two of one name that of
     the first array).
-    Raises ParameterError if arrays differ in the coordinates or the length of an axis that they
-    share.
+    Raises ParameterError if arrays differ in coordinates or length of an axis that they share.
     """
     import xarray as xr
 
@@ -555,7 +554,8 @@ def _from_xarray(arrays: Named) -> tuple[Named, Labels]:
             names,
             "unlike coordinates",
             "aligned",
-            f"{names} have different coordinates: align them first, by xarray.align",
+            f"{names} have axes of the same name, but of different coordinates or lengths: give "
+            "the same coordinates (xarray.align selects the common ones), or rename an axis",
         ) from error
     like = whole[0].drop_attrs()
     # from the last array to the first, whose coordinates take the place of later ones

@@ -383,7 +383,7 @@ class MotionStatus(enum.IntEnum):
 
 _MESSAGES = (
     "reached the last output time",
-    "came to rest: |V| and R |omega| fell below the speed rest",
+    "came to rest: |V| and R |omega| fell below the given speed rest",
     "max_steps steps did not suffice up to the last output time: raise max_steps, shorten the "
     "motion, or give a larger rtol (if a speed grows without bound, only shorten the motion)",
     "the time steps became too short for double precision, since the motion changes too fast: make "

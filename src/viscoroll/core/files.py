@@ -171,7 +171,9 @@ def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
             found = read(data)
     if found is None:
         warnings.warn(
-            f"{path}: {damaged.format('not as it was written')}", RuntimeWarning, stacklevel=3
+            f"{path}: {damaged.format('its content was damaged or changed')}",
+            RuntimeWarning,
+            stacklevel=3,
         )
         return None
     with suppress(OSError):  # a folder that is read-only
@@ -222,8 +224,9 @@ def read_sealed(path: FilePath, max_bytes: int, kind: str, remedy: str) -> bytes
     """
     file = as_path(path)
     with as_file_error(path, "cannot be read", f": it must be a {kind}"):
-        if file.is_file() and file.stat().st_size > max_bytes:
-            raise FileError(path, f"is larger than {max_bytes} bytes, which no {kind} is")
+        if file.is_file() and (size := file.stat().st_size) > max_bytes:
+            problem = f"is too large for a {kind}: it has {size} bytes, allowed are {max_bytes}"
+            raise FileError(path, problem)
         content = file.read_bytes()
     if content.startswith(b"CDF") and kind != "law or grid":
         problem = "is netCDF-3, which viscoroll writes for other programs but cannot read"

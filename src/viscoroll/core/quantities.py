@@ -274,7 +274,7 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
     import pint
 
     quantity = registry().Quantity
-    allowed = f"a unit of the dimension of {target}"
+    allowed = f"a unit of the dimension of {target}" if target != "1" else "a unit of a ratio, as %"
     try:
         at_0, at_1 = (
             quantity(number, pint_spelling(unit)).to(pint_spelling(target)).magnitude

@@ -315,7 +315,10 @@ class Values(Result):
         if name in self._values:
             return self._values[name]
         names = ", ".join(self._values)
-        raise AttributeError(f"{name!r} was not computed; this result contains {names}")
+        raise AttributeError(
+            f"{name!r} is not in this result: it contains {names}.  Some "
+            "functions, such as contact, compute further quantities by fields="
+        )
 
     def __dir__(self) -> Iterable[str]:
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]

@@ -268,7 +268,9 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     curve = functions.functions[name]
     if not curve.terms.size:
         raise described_error(
-            name, "is empty", "a number, an array with one for each motion, or a function of t"
+            name,
+            "is empty",
+            "a number, an array with one number for each motion, a Schedule or a function of t",
         )
     # upper bounds of the magnitude over all times, (1,) or (m,)
     sizes = []

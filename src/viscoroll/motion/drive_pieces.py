@@ -354,8 +354,8 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
         ):
             raise dimensionless_error(
                 sampled.name,
-                f"{sampled.name} is a function that piecewise polynomials cannot approximate near "
-                f"t = {{}} (with {sampled.taken} values of it): must be smooth except for "
+                f"{sampled.name} is a function of t that could not be approximated near t = {{}}, "
+                f"although it was called {sampled.taken} times: must be smooth except for "
                 "jumps and corners, or be given as a Schedule",
                 "t",
                 start,
@@ -492,7 +492,7 @@ def piecewise(
         raise shape_error(
             name,
             values.shape,
-            "a number, an array with one for each motion, or a Schedule(times, values)",
+            "a number, or an array (n,) with one number for each motion",
         )
     return Piecewise(np.zeros((1, 1)), values.reshape(-1, 1, 1))
 

@@ -263,21 +263,27 @@ class Ensemble(RollResult):
                 low, middle, high = (
                     np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
                 )
-                text = f"at the end: median {middle:.6g}, 90 % between {low:.6g} and {high:.6g}"
+                text = (
+                    f"at the last time: median {middle:.6g}, 90 % of the motions between {low:.6g} "
+                    f"and {high:.6g}"
+                )
                 rows.append(SummaryRow(name, text, self._unit(name)))
         rows.append(
-            SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()} motions")
+            SummaryRow(
+                "onset of partial slip", f"in {np.isfinite(self.onset_time).sum()} of the motions"
+            )
         )
         if self.flow.any():
             rows.append(
                 SummaryRow(
-                    "by flow map", f"{self.flow.sum()} motions, stated error {self.flow_error:.2g}"
+                    "by flow map",
+                    f"{self.flow.sum()} of the motions, stated error {self.flow_error:.2g}",
                 )
             )
         rows += [
             SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()
         ]
-        return f"Ensemble of {len(self)} motions", rows
+        return f"Ensemble of {len(self)} motion{'s' * (len(self) != 1)}", rows
 
     def to_xarray(self) -> Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status,
@@ -503,11 +509,14 @@ def _broadcast_inputs(
     inputs = problem.scene.numbers | {"V0": problem.V0, "omega0": problem.omega0}
     arrays = {name: np.asarray(value) for name, value in inputs.items()}
     # stand-ins with as many entries as the drive has motions, for the shapes alone
-    counts = zip(("drive", "gains"), problem.functions.counts)
+    counts = zip(("functions of the drive", "gains and drag"), problem.functions.counts)
     own = {name: np.zeros(n) for name, n in counts if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
-        raise shape_error("V0 or omega0", shape, "a number or a vector (n,)")
+        name, array = next((n, x) for n, x in (drives | arrays).items() if x.ndim > 1)
+        # the numbers of the scene have other names than those of its cylinder
+        name = "an array of the roller" if name in problem.scene.numbers else name
+        raise shape_error(name, array.shape, "a number or a vector (n,)")
     count = shape[0] if shape else 1
     return {name: broadcast_vector(array, (count,)) for name, array in arrays.items()}, count
 

@@ -272,7 +272,7 @@ def build_map(parameters: MapParameters, octave: int, threads: int | None = None
         problem="",
     )
     if new_map.slow_rate == 0.0:
-        return replace(new_map, problem="an elastic cylinder never slows down")
+        return replace(new_map, problem="an elastic material has no rolling resistance")
     material, kappa, mu, j = parameters
     problem = FlowProblem(
         material=material,

@@ -97,13 +97,16 @@ def solve_batch(
     free = not batch.problem.driven and scene.like_bodies and not scene.tabulated
     mappable = free and not scene.shape
     if method == "flow" and not mappable:
-        which = (
-            "motions differ in more than V0 and omega0"
+        why = (
+            "numbers of the roller are arrays, so that motions differ in more than V0 and omega0"
             if free
-            else "motions have a load, a brake, a drag, a prescribed speed or unsteady=True, or "
-            "the law is not that of two half-spaces of one material"
+            else "unsteady=True is given"
+            if batch.problem.unsteady
+            else "a force, torque, slope, brake, drag or prescribed speed is given"
+            if batch.problem.driven
+            else "the law is not that of two half-spaces of one material"
         )
-        raise ParameterError("method", "'flow'", f"'auto' or 'integrate' if {which}")
+        raise ParameterError("method", "'flow'", f"'auto' or 'integrate', as {why}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
     if mappable and (method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)):

@@ -46,7 +46,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
     if times.ndim != 1 or times.size == 0:
-        raise shape_error("t", times.shape, "one end time or a vector of output times")
+        raise shape_error("t", times.shape, "one end time, or a vector of at least one output time")
     falls = times[1:] < times[:-1]
     if falls.any():
         n = falls.argmax()

@@ -304,15 +304,17 @@ def describe_load(given: Any, unit: str) -> str:
     )
 
 
-def describe_values(t: NDArray, values: NDArray) -> str:
+def describe_values(t: NDArray, values: NDArray, unit: str) -> str:
     """Return a text on values over time: the first, the last that was reached, the largest between
     them with its time.
 
     t, values: times and values, (times,), at least one, in the unit of the roller; values are NaN
     at times that the motion did not reach.
-    Returns "first A, largest B (at t = T), last C", with B the value of the largest magnitude, the
-    first one of equal ones, and numbers to six digits; without it where it is printed like the
-    first or the last; the number alone for one time; "not reached" where all values are NaN.
+    unit: unit of the times, "" of dimensionless ones.
+    Returns "first A, largest in magnitude B (at t = T UNIT), last C", with B the value of
+    the largest magnitude, the first one of equal ones, and numbers to six digits; without it where
+    it is printed like the first or the last; the number alone for one time; "not reached" where all
+    values are NaN.
     """
     reached = values[~np.isnan(values)]
     if not reached.size:
@@ -321,7 +323,8 @@ def describe_values(t: NDArray, values: NDArray) -> str:
     first, most, last = (f"{value:.6g}" for value in (reached[0], values[peak], reached[-1]))
     if t.size == 1:
         return first
-    largest = "" if most in (first, last) else f"largest {most} (at t = {t[peak]:.6g}), "
+    when = f"t = {t[peak]:.6g} {unit}".rstrip()
+    largest = "" if most in (first, last) else f"largest in magnitude {most} (at {when}), "
     return f"first {first}, {largest}last {last}"
 
 
@@ -373,8 +376,8 @@ def _material_variables(materials: Any, count: int) -> Variables:
         found = along(
             "cover_thickness",
             materials.thickness,
-            "thickness of the cover divided by l0, the contact length at rest of half-spaces under "
-            "the same load",
+            "thickness of the cover divided by l0, the contact length at rest of half-spaces of "
+            "the same materials under the same load",
             **layer,
         )
         if np.ndim(materials.nu):
@@ -383,7 +386,11 @@ def _material_variables(materials: Any, count: int) -> Variables:
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")
-        | along("share", materials.share, "the cylinder's part of the sum of long-time compliances")
+        | along(
+            "share",
+            materials.share,
+            "long-time compliance of the cylinder, divided by the sum of those of both bodies",
+        )
     )
 
 
@@ -411,8 +418,12 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> Varia
             {"long_name": title + about, "units": "1"},
         )
         for name, values, about in (
-            ("strengths", strengths, f"strengths of {form} divided by the long-time {total}"),
-            ("times", times, f"times of {form} divided by T_ref"),
+            (
+                "strengths",
+                strengths,
+                f"strengths of the modes of {form}, divided by the long-time {total}",
+            ),
+            ("times", times, f"times of the modes of {form}, divided by T_ref, the unit of time"),
         )
     }
 

@@ -194,8 +194,9 @@ def make_problem(
             "rest",
             rest,
             "None",
-            f"rest = {rest!r:.60} is one speed in m/s for all motions, but R or T_ref (T_epsilon) "
-            "differs between them: leave rest out, or give all the same R and T_ref",
+            f"rest = {rest!r:.60} is one speed in m/s for all motions, but R or the time T_ref "
+            "of the material (T_epsilon) differs between them: leave rest out, or give all the "
+            "same R and T_ref",
         )
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     if (last := float(end) / scale["t"]) == math.inf:
@@ -213,8 +214,8 @@ def make_problem(
                 "resolve",
                 resolve,
                 "left out",
-                f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
-                "leave resolve out",
+                f"resolve = {resolve!s:.60} is given, but no load or speed is given as a "
+                "Python function of t: leave resolve out (a Schedule does not need it)",
             )
         resolve = check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
     try:
@@ -230,14 +231,14 @@ def make_problem(
     except ParameterError as error:
         raise with_scales(error, scale) from error
     if rest is not None and functions.acts_at_end:
-        raise ParameterError(
-            "rest",
-            rest,
-            "None",
-            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of "
-            "the motion: leave rest out, or let the load end earlier (Motion.switches has the time "
-            "at which a brake stops the cylinder)",
+        why = (
+            f"{functions.prescribed} is prescribed: leave rest out"
+            if functions.prescribed
+            else f"a load (given: {', '.join(drive.given)}) still acts at the end of the motion: "
+            "leave rest out, or let the load end earlier (Motion.switches has the time at which a "
+            "brake stops the cylinder)"
         )
+        raise ParameterError("rest", rest, "None", f"rest = {rest!s:.60} is given, but {why}")
     if single and functions is not UNDRIVEN:
         many = {
             name: f.terms[:, 0, 0] for name, f in functions.functions.items() if len(f.terms) > 1
@@ -323,7 +324,8 @@ def _apply_standstill(
         if prescribed
         else "the cylinder starts at V0 = omega0 = 0"
         if np.any((V == 0.0) & (omega0 == 0.0))
-        else "the cylinder starts in full slip" * bool(np.any(np.abs(omega0 - V) > limit))
+        else "R omega0 differs so much from V0 that the cylinder starts in full slip"
+        * bool(np.any(np.abs(omega0 - V) > limit))
     )
     if why:
         raise ParameterError(

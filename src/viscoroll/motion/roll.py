@@ -278,7 +278,7 @@ class Motion(RollResult):
         """
         rows = [self._row_of_times()]
         rows += [
-            SummaryRow(name, describe_values(self.t, self[name]), self._unit(name))
+            SummaryRow(name, describe_values(self.t, self[name], self._unit("t")), self._unit(name))
             for name in ("V", "omega", "x")
         ]
         for name, given in self.drive.given.items():
@@ -294,7 +294,7 @@ class Motion(RollResult):
             when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
             changes = f"{len(self.switches)}, the last to {last.regime} at {when}"
             if last.regime == "rest" and np.isnan(self.rest_time):
-                changes += ": V fell below the least double-precision number"
+                changes += ": V fell below the smallest number of double precision"
             rows.append(SummaryRow("changes of regime", changes))
         if self.reversals.size:
             rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
@@ -331,9 +331,8 @@ class Motion(RollResult):
         times = output_times(t, self.scale)
         end = self._problem.end * self.scale["t"]
         if times[-1] > end and float(times[-1]) / self.scale["t"] > self._problem.end:
-            raise ParameterError(
-                "t", times[-1], f"within the motion, [0, {digits_beside(end, times[-1])}]"
-            )
+            within = f"within the motion, [0, {digits_beside(end, times[-1])}] {self._unit('t')}"
+            raise ParameterError("t", times[-1], within.rstrip())
         return integrate_motion(self._problem, times)
 
     @cached_property
@@ -592,8 +591,8 @@ def roll(
     warn_of_speeds(problem.roller, start[0], motion.V)
     if not motion.success:
         warnings.warn(
-            f"roll: {motion.status.message}.  Outputs after this are NaN; the last state, if any, "
-            "is in the attribute message of the motion",
+            f"roll: {motion.status.message}.  Outputs at later times are NaN; the last state, "
+            "if any, is in the attribute message of the motion",
             RuntimeWarning,
             stacklevel=2,
         )

@@ -450,7 +450,7 @@ def _variables(
         "histogram": (
             (in_bins, *times),
             np.transpose([one.counts_in(bins) for one in histograms]),
-            "motions a bin",
+            "number of motions in each bin",
         ),
         "bin_low": ((in_bins,), below, "lower edge of a bin"),
         "bin_high": ((in_bins,), above, "upper edge of a bin"),
@@ -462,6 +462,10 @@ def _variables(
         # a quantity that is one number per motion has no axis t: its last axis, of length 1, goes
         data[f"{name}_{part}"] = dims, values.reshape(values.shape[: len(dims)]), attributes
     exact = any(one.values is not None for one in histograms)
-    accuracy = "exact" if exact else "accurate to the width of a bin, at most 0.4 %"
+    accuracy = (
+        "exact"
+        if exact
+        else "error at most the width of a bin, which is at most 0.4 % of the value"
+    )
     data[f"{name}_quantiles"][2]["comment"] = accuracy
     return data
