@@ -304,7 +304,7 @@ REFUSED = {
     "NAME=HEADING, as 'storage=Module 1'",
     "material fit dma.csv --units storage=MPa,kPa": "argument --units: 'kPa' must be NAME=UNIT",
     "material fit dma.csv --mode shear": "mode = 'shear': must be 'tension', as read from dma.csv",
-    "material fit dma.csv --column temperature=E_loss": "given for temperature, but its unit "
+    "material fit dma.csv --column temperature=E_loss": "read as 'temperature', but its unit "
     "'MPa' is not a unit of temperature: give the unit of the column, as units={'temperature'",
     "material fit dma.csv --wlf 8.86,101.6": "--wlf = '8.86,101.6': must be C1,C2,T0",
     "tables law rubber.toml --alpha 1:2 -o law.nc": "which has a material of its own",

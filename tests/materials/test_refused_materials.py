@@ -96,7 +96,7 @@ REFUSED = [
     *each(
         None,
         {
-            "dimension of 1": lambda: of_column("V0 [km/h];mu\n0,36;0,1"),
+            "a unit of a ratio, as %": lambda: of_column("V0 [km/h];mu\n0,36;0,1"),
             "T_ref is in 1/Hz: must be in s": lambda: vr.Material(
                 1e6, 0.5, T_ref=xr.DataArray(1.0, attrs={"units": "1/Hz"})
             ),

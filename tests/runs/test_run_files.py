@@ -291,14 +291,14 @@ def test_a_file_by_two_names_is_one_file(here, sample):
         assert run.inputs.dimensions.count("sample.csv") == 1
         values = block_inputs(run, 0)
         assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
-        refused(lambda run=run: sobol_indices(run, 16), "m, [cylinder] E = columns of sample.csv")
+        refused(lambda run=run: sobol_indices(run, 16), "E are columns of one file, sample.csv")
     text = SAMPLED.replace('"mass"', '"name"')
     refused(lambda: run_of(text), "line 3", "'a' is not a number", error=vr.FileError)
     sample.assign(mass="a").to_parquet("sample.parquet")
     text = SAMPLED.replace(".csv", ".parquet")
     refused(lambda: run_of(text), "line 3", "one column of numbers", error=vr.FileError)
     sample.assign(mass=np.nan).to_parquet("sample.parquet")
-    refused(lambda: run_of(text), "line 3", "has nan in row 1", error=vr.FileError)
+    refused(lambda: run_of(text), "line 3", "has nan as number 1", error=vr.FileError)
 
 
 @pytest.mark.parametrize("temperature", ["20.0", '{ distribution = "uniform", scale = 30.0 }'])

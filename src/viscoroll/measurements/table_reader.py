@@ -504,7 +504,8 @@ def temperatures_of_lines(table: Table) -> Floats | None:
             raise table.error(
                 f"the numbers from line {numbers[start]} on have "
                 f"{'several temperatures, or one in doubt,' if values else 'no temperature'} in "
-                "the lines above them: write one such line, as 'Temperature 20 °C'"
+                "the lines above them that are worded alike: write one such line above each "
+                "block of numbers, as 'Temperature 20 °C'"
             )
         temperature[start:] = values.pop()  # blocks below overwrite theirs
     return temperature
