@@ -125,11 +125,7 @@ def test_heat_of_slip_and_given_loads():
 
 
 @pytest.mark.parametrize(
-    "base",
-    [
-        ROLLER.base,
-        *long(vr.Material.elastic(5e7, 0.3), vr.Material.elastic(3e6, 0.49)),
-    ],
+    "base", [ROLLER.base, *long(vr.Material.elastic(5e7, 0.3), vr.Material.elastic(3e6, 0.49))]
 )
 def test_vertical_shift_scales_the_moduli(base):
     """The equilibrium has the loss of the material whose moduli and times are those at its

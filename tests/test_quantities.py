@@ -370,13 +370,7 @@ of_scene = partial(SCENE.roll, 0.5, 0.5, 1.0)
 
 @pytest.mark.parametrize(
     ("name", "unit"),
-    [
-        ("force", "N/m"),
-        ("torque", "N*m/m"),
-        ("brake", "N*m/m"),
-        ("omega", "rad/s"),
-        ("V", "m/s"),
-    ],
+    [("force", "N/m"), ("torque", "N*m/m"), ("brake", "N*m/m"), ("omega", "rad/s"), ("V", "m/s")],
 )
 def test_schedules_carry_units(name, unit):
     def rolled(times, values):

@@ -315,7 +315,7 @@ REFUSED = [
             "file.toml | section [material] | is missing": [
                 "[base]\nE = 2e11\nnu = 0.3\n",
                 "[other]\nx = 1",
-            ],
+            ]
         },
     ),
 ]

@@ -7,20 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from calls import (
-    BELT,
-    DMA,
-    HEAVY,
-    LABELLED,
-    ONE,
-    PAPER,
-    ROLLER,
-    SOFT,
-    STEEL,
-    UNSURE,
-    T,
-    pair,
-)
+from calls import BELT, DMA, HEAVY, LABELLED, ONE, PAPER, ROLLER, SOFT, STEEL, UNSURE, T, pair
 from drives import ON_DMA as DMA_ROLLER
 from experiments import ranges, roller, thrown
 
@@ -116,9 +103,7 @@ WARNED = {
     ],
 }
 SILENT = {
-    "peak pressure on the layer": [
-        lambda: PRESSED.replace(load=1e3).contact(0.5, delta=0.0),
-    ],
+    "peak pressure on the layer": [lambda: PRESSED.replace(load=1e3).contact(0.5, delta=0.0)],
     "": [
         lambda: vr.Arrhenius(energy=8e4, T0=180.0)(-60.0),
         lambda: DMA_ROLLER.roll(30.0, 30.0, 1.0),

@@ -270,13 +270,7 @@ COVERED = (
 
 
 @pytest.mark.parametrize(
-    "scene",
-    [
-        SCENE,
-        series_scene(TWO, mu=0.02),
-        series_scene(UNLIKE, mu=0.02),
-        *long(*COVERED),
-    ],
+    "scene", [SCENE, series_scene(TWO, mu=0.02), series_scene(UNLIKE, mu=0.02), *long(*COVERED)]
 )
 def test_feedback_on_omega_misses_none(scene):
     """With both loads, one load or the other dependent on omega, under random values and gains."""

@@ -415,10 +415,7 @@ REFUSED = [
                 "shift": [2.0, 0.0],
             },
             "omega | at least 2 points": {"temperature": np.arange(20.0)},
-            "shift | factor for each of 2": {
-                "temperature": TWO,
-                "shift": [1.0],
-            },
+            "shift | factor for each of 2": {"temperature": TWO, "shift": [1.0]},
         },
     ),
     *each(
@@ -426,7 +423,7 @@ REFUSED = [
         {
             "alpha = 17: must be within the table's range [1, 2]": lambda: vr.tables.interpolate(
                 grid(), V=0.15, delta=0.01, alpha=17.0
-            ),
+            )
         },
         errors.OutOfTableError,
     ),

@@ -40,22 +40,10 @@ PASCAL = {
 }
 PLACES = [
     (f, HERTZ, "f;Frequency;Frequenz;freq.;Test frequency;Prüffrequenz"),
-    (
-        w,
-        ANGULAR,
-        "omega;ω;Angular frequency;Kreisfrequenz;ang. freq.;angular_frequency",
-    ),
+    (w, ANGULAR, "omega;ω;Angular frequency;Kreisfrequenz;ang. freq.;angular_frequency"),
 ]
-STORAGE = (
-    S,
-    PASCAL,
-    "E';E′;Storage modulus;Speichermodul;E_stor;Storage Modulus E';E'-Modul",
-)
-LOSS = (
-    L,
-    PASCAL,
-    "E'';E\";Loss modulus;Verlustmodul;E_loss;E″;Loss Modulus (E'')",
-)
+STORAGE = (S, PASCAL, "E';E′;Storage modulus;Speichermodul;E_stor;Storage Modulus E';E'-Modul")
+LOSS = (L, PASCAL, "E'';E\";Loss modulus;Verlustmodul;E_loss;E″;Loss Modulus (E'')")
 TAN = (
     L / S,
     {"": 1.0, "-": 1.0, "1": 1.0, "%": 100.0},

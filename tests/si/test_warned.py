@@ -40,12 +40,7 @@ def test_where_the_data_end():
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 @pytest.mark.parametrize(
     ("growth", "thickness"),
-    [
-        (0.0, None),
-        (0.12, None),
-        (0.3, None),
-        pytest.param(0.12, 0.01, marks=pytest.mark.long),
-    ],
+    [(0.0, None), (0.12, None), (0.3, None), pytest.param(0.12, 0.01, marks=pytest.mark.long)],
 )
 def test_data_over_the_band_determine_M(growth, thickness):
     """Rubbers of 15 modes, whose moduli of three decades are fitted: M at both ends of transit_band

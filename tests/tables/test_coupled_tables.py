@@ -94,8 +94,7 @@ def test_free_creepage_is_that_with_stick(scene):
 
 
 @pytest.mark.parametrize(
-    ("omega0", "force", "torque"),
-    [(1.0, 0.0, -0.35), (1.0, -0.1, 0.0), (0.5, 0.0, 0.0)],
+    ("omega0", "force", "torque"), [(1.0, 0.0, -0.35), (1.0, -0.1, 0.0), (0.5, 0.0, 0.0)]
 )
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_motions_solve_the_equations_and_keep_energy(scene, omega0, force, torque):
