@@ -175,7 +175,7 @@ REFUSED = [
             **{"cylinder": roller(), "unknown": ranges("E"), "data": [resistance()]} | more
         ),
         {
-            "unknown | at least one name": {"unknown": {}},
+            "unknown names no parameter | at least one": {"unknown": {}},
             "unknown E | (1e+06, 2e+06) | contains 3e+06, the value of the cylinder with which": {
                 "unknown": {"E": (1e6, 2e6)}
             },

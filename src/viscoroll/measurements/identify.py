@@ -163,7 +163,12 @@ def identify(
         cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
-        raise described_error("unknown", "is empty", "at least one name and its range")
+        raise described_error(
+            "unknown",
+            "names no parameter to be determined",
+            "at least one with its range, as unknown={'mu': (0.1, 1.0)} (in a file mu = [0.1, 1.0] "
+            "in [unknown])",
+        )
     changing = [each.name for each in unknowns if each.kind not in WITHOUT_LAW]
     if changing and cylinder.scene().tabulated:
         raise described_error(

@@ -148,7 +148,8 @@ def start_of(root: Path) -> Record:
         root,
         "its file records/start is missing or damaged: repeat the run that wrote it to repair it"
         if (root / RECORDS).is_dir()
-        else "is not a results store: it has no folder records; give that of a run",
+        else "is not a results store (it contains no folder 'records'): give the folder that "
+        "`viscoroll ensemble` wrote, such as results.zarr",
     )
 
 

@@ -328,10 +328,10 @@ _FEW_RATIO = 8.0
 _MOST_POINTS = {COUPLED: COUPLED_POINTS, COVER: 400}
 #: Kind of the file of a law -> points at which it is checked, and the reference.
 _REFERENCES = {
-    LAW: "random speeds, compared with the exact formulas",
-    AXIS: "random speeds and alphas, compared with the exact formulas",
-    COVER: "random speeds, compared with solutions with more terms of the pressure",
-    COUPLED: "random speeds and creepages, compared with the coupled solution there",
+    LAW: "random speeds, against the exact formulas",
+    AXIS: "random speeds and alphas, against the exact formulas",
+    COVER: "random speeds, against a more accurate solution (a longer series for the pressure)",
+    COUPLED: "random speeds and creepages, against the coupled solution there",
 }
 #: Rounding error of a value, added to the stated error.
 ROUNDING = 2e-15
@@ -460,7 +460,7 @@ def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
             f"{table.attrs['title']}: {name}",
             errors[name],
             ratio * stated + (_LENGTH_ERROR if name in COVER_FUNCTIONS[1:] else ROUNDING),
-            f"{'absolute' if kind == COUPLED else 'relative'}; {count} {_REFERENCES[kind]}",
+            f"{'absolute' if kind == COUPLED else 'relative'}; at {count} {_REFERENCES[kind]}",
         )
         for name, stated in stated_errors(table).items()
     ]
