@@ -526,11 +526,11 @@ def refuse_cover(scene: Parameters, why: str) -> None:
         sentence = f"thickness is given: for a layer of finite thickness {why}"
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
     if scene.tabulated:
-        law, instead = (
-            ("a table of pressure and shear solved together", "")
-            if scene._law is None
-            else ("the table or grid given as material=", " and materials in place of that table")
-        )
+        law = "a table of pressure and shear solved together"
+        instead = ""
+        if scene._law is not None:
+            law = "the table or grid given as material="
+            instead = " and materials in place of that table"
         raise ParameterError(
             "coupled",
             True,

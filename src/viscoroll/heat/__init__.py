@@ -427,7 +427,8 @@ def _reasons(
 ) -> Any:
     """Return the reasons why states have no equilibrium within the ranges of shift and data.
 
-    states, zeros, rows: the states, the equilibria found, (m,), and their fields, (m,) each.
+    states, zeros: the states, and the equilibria found, (m,).
+    rows: their fields, (m,) each, and under loads "branches", the number of speeds of each state.
     known, inside: whether their a_T and M are numbers, and their speed within the data, (m,).
     Returns texts, (states,), objects; "" for a state that has an equilibrium.
     """
@@ -437,10 +438,10 @@ def _reasons(
         own = np.flatnonzero(zeros.state == n)
         if not own.size:
             found[n] = (
-                f"the loss exceeds the heat given off at every temperature up to {HOTTEST:g} °C: "
-                "raise conductance, or lower the load or the speed"
-                if rows.get("branches", states.load)[n]  # at a given V it is not asked
-                else "with this force, torque or slope there is no steady speed other than 0"
+                "with this force, torque or slope there is no steady speed other than 0"
+                if "branches" in rows and not rows["branches"][n]
+                else "the loss exceeds the heat given off at every temperature up to "
+                f"{HOTTEST:g} °C: raise conductance, or lower the load or the speed"
             )
             continue
         at = own[np.argmin(zeros.theta[own])]
@@ -489,8 +490,7 @@ def pair_temperatures(
 
     Parameters
     ----------
-    roller : a :class:`Cylinder` without arrays and thicknesses, of which both materials have a
-        ``shift``.
+    roller : a :class:`Cylinder` without arrays and thicknesses; both materials have a ``shift``.
     V : speed, m/s, other than 0.
     ambient, conductance : of the cylinder and of the base, degrees Celsius and W/(m K), as in
         :func:`temperature`.
@@ -525,19 +525,19 @@ def pair_temperatures(
 
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
-    if pair is None or scene.shape or pair.covered or 1.0 in [b.prony.alpha for b in pair.bodies]:
-        raise described_error(
-            "roller",
-            "has no Material"
-            if pair is None
-            else f"has arrays of shape {scene.shape}"
-            if scene.shape
-            else f"has a thickness of the {pair.covered}"
-            if pair.covered
-            else "has an elastic or rigid body",
-            "a Cylinder with two viscoelastic Materials without thickness, and no arrays; if only "
-            "one body is viscoelastic, call vr.temperature",
-        )
+    fault = ""
+    if pair is None:
+        fault = "has no Material"
+    elif scene.shape:
+        fault = f"has arrays of shape {scene.shape}"
+    elif pair.covered:
+        fault = f"has a thickness of the {pair.covered}"
+    elif 1.0 in [body.prony.alpha for body in pair.bodies]:
+        fault = "has an elastic or rigid body"
+    if fault:
+        allowed = "a Cylinder with two viscoelastic Materials without thickness, and no arrays; "
+        allowed += "if only one body is viscoelastic, call vr.temperature"
+        raise described_error("roller", fault, allowed)
     V = check_number("V", V, unit=scale)
     speed = abs(V)
     around = check_both("ambient", ambient, unit="degC")

@@ -61,6 +61,22 @@ class Batch(NamedTuple):
     progress: str | None
 
 
+def _reason_against_map(problem: MotionProblem) -> str:
+    """Return why no flow map contains the motions of a problem, in words of a message; "" if one
+    may.
+    """
+    scene = problem.scene
+    if problem.unsteady:
+        return "unsteady=True is given"
+    if problem.driven:
+        return "a force, torque, slope, brake, drag or prescribed speed is given"
+    if scene.tabulated or not scene.like_bodies:
+        return "the law is not that of two half-spaces of one material"
+    if scene.shape:
+        return "numbers of the roller are arrays, so that motions differ in more than V0 and omega0"
+    return ""
+
+
 def solve_batch(
     batch: Batch, method: str, speed: float | None
 ) -> tuple[FlowResult, dict[str, Any]]:
@@ -92,24 +108,13 @@ def solve_batch(
     integration, (n,)).  A motion that could not be integrated to its end has a status above RESTED,
     and NaN at the times that it did not reach.
     """
-    scene = batch.problem.scene
     immobile = batch.immobile
-    free = not batch.problem.driven and scene.like_bodies and not scene.tabulated
-    mappable = free and not scene.shape
-    if method == "flow" and not mappable:
-        why = (
-            "numbers of the roller are arrays, so that motions differ in more than V0 and omega0"
-            if free
-            else "unsteady=True is given"
-            if batch.problem.unsteady
-            else "a force, torque, slope, brake, drag or prescribed speed is given"
-            if batch.problem.driven
-            else "the law is not that of two half-spaces of one material"
-        )
-        raise ParameterError("method", "'flow'", f"'auto' or 'integrate', as {why}")
+    reason = _reason_against_map(batch.problem)
+    if method == "flow" and reason:
+        raise ParameterError("method", "'flow'", f"'auto' or 'integrate', as {reason}")
     found = None
     about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
-    if mappable and (method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)):
+    if not reason and (method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)):
         found = _solve_by_flow_map(batch, speed, about)
     if found is None:
         found = FlowResult.empty(len(batch.rows), immobile.size, batch.times.size)
