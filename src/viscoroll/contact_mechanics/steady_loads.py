@@ -225,8 +225,8 @@ _BALANCE_ROUNDING = 4e-15
 class Shear(NamedTuple):
     """How shear acts back on the moments at some speeds; all 0 of half-spaces.
 
-    factors : a (module) of base and cylinder, (2, n), dimensionless.
-    excesses : e (module) of base and cylinder, (2, n), dimensionless.
+    factors : a of base and cylinder in the equations of the module, (2, n), dimensionless.
+    excesses : e of base and cylinder there, (2, n), dimensionless.
     mu : coefficient of friction, a number or (n,).
     """
 
@@ -235,31 +235,40 @@ class Shear(NamedTuple):
     mu: Any
 
     def moments(self, Q: Floats) -> Floats:
-        """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
+        """Return what a creep force Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
         return -Q * (self.factors + self.excesses * (np.abs(Q) / self.mu))
 
-    def traction(self, rest: Floats, of_axis: float = 0.0, of_spin: float = 0.0) -> Floats:
-        """Return the Q of equilibrium, (n,), from a sum of the balances (module).
+    def traction(self, right_side: Floats, of_axis: float = 0.0, of_spin: float = 0.0) -> Floats:
+        """Return the creep force Q, (n,), that balances axis or cylinder, or both together where
+        feedback acts on omega.
 
-        They are Q (1 + a_b + e_b |Q|/mu) = r_f of the axis, and Q (1 - a_c - e_c |Q|/mu) = r_q of
-        the cylinder, with r_f = M_b - f and r_q = q - M_c.  With gains G_f and G_q on omega the
-        right sides are r_f - G_f omega and r_q + G_q omega: G_q times the first plus G_f times the
-        second has no omega.
+        The balances are Q (1 + a_b + e_b |Q|/mu) = r_f of the axis, and Q (1 - a_c - e_c |Q|/mu) =
+        r_q of the cylinder, with r_f = M_b - f and r_q = q - M_c (module).  With gains G_f and G_q
+        on omega the right sides are r_f - G_f omega and r_q + G_q omega.  The first balance times
+        G_q plus the second times G_f has no omega.
 
-        rest : sum of the right sides with both factors, (n,); with gains at any omega, the same in
-            both.
-        of_axis, of_spin : factors of both balances.
-        Raises ParameterError where more than one Q balances.
+        right_side : of_axis r_f + of_spin r_q, dimensionless, (n,).  With gains on omega r_f and
+            r_q are those at one omega, which may be any: the sum does not depend on it.
+        of_axis, of_spin : weights with which the balance of the axis and that of the cylinder are
+            added: (1, 0) and (0, 1) give one alone, (G_q, G_f) the sum without omega.
+        Returns Q divided by P.  It is not limited: where |Q| exceeds mu, friction does not suffice.
+        Raises ParameterError where both weights are not 0 and more than one Q up to mu may balance.
         """
         factor = of_axis * (1.0 + self.factors[0]) + of_spin * (1.0 - self.factors[1])
         excess = of_axis * self.excesses[0] - of_spin * self.excesses[1]
+        # Q (factor + excess |Q|/mu) has the slope factor + 2 excess |Q|/mu in Q.  For |factor| > 2
+        # |excess| it is monotone up to |Q| = mu, so that at most one such Q balances.  One balance
+        # alone is not tested: a and e have the size of strains of the surface under the pressure,
+        # far below 1, so that factor is near 1 and excess near 0
         if of_axis and of_spin and np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
             raise _cancelling_error(of_spin, of_axis)
-        # the root of Q (factor + excess |Q|/mu) = rest that is continuous with excess = 0, in a
-        # form without cancellation
-        steep = 4.0 * excess * np.sign(factor) / self.mu * np.abs(rest)
-        root = np.sqrt(np.maximum(factor * factor + steep, 0.0))
-        return 2.0 * rest / (factor + np.copysign(root, factor))
+        # the root of Q (factor + excess |Q|/mu) = right_side that is continuous with excess = 0, in
+        # a form without cancellation
+        discriminant = factor**2 + 4.0 * excess * np.sign(factor) / self.mu * np.abs(right_side)
+        # below 0 no Q balances; with 0 in its place |Q| becomes larger than mu, which callers
+        # understand as friction that does not suffice
+        root = np.sqrt(np.maximum(discriminant, 0.0))
+        return 2.0 * right_side / (factor + np.copysign(root, factor))
 
 
 def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
@@ -478,6 +487,7 @@ def loads_without_omega(
     total = of_torque + of_force
     if abs(total) <= _CANCELLED * (abs(of_torque) + abs(of_force)):
         raise _cancelling_error(of_force, of_torque)
+    # weights of the two balances, divided by their sum: the factor of Q is then 1
     axis = of_torque / total
     spin = of_force / total
     wanted = spin * on_spin - axis * on_axis

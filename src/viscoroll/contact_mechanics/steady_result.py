@@ -41,7 +41,7 @@ _FIELDS = (
     "force",
     "torque",
 )
-#: Names of the fields of :class:`Loss` in datasets.
+#: Names of the fields of :class:`Loss` in datasets, in the order of these fields.
 _LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "efficiency"
 
 
@@ -392,10 +392,11 @@ class Steady(Equilibria):
         lost = slip + half_space + cylinder
         coefficient = np.where(moving, lost / np.abs(V), np.abs(Q * delta)) / P
         efficiency = np.where(input_ > 0.0, output / input_, np.nan)
-        found: Any = slip, half_space, cylinder, coefficient, efficiency
+        # in the order of the fields of Loss, as _LOSSES
+        fields: Any = slip, half_space, cylinder, coefficient, efficiency
         if self._labels is not None:
-            found = map(self._labels.apply, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
-        return Loss(*found)
+            fields = map(self._labels.apply, _LOSSES, fields, ("equilibrium",) * len(_LOSSES))
+        return Loss(*fields)
 
     @property
     def success(self) -> Any:  # type: ignore[override]
@@ -425,16 +426,18 @@ class Steady(Equilibria):
         Returns
         -------
         xarray.Dataset
-            Over the axes of the loads (of one load there are none; named as in labelled arguments,
-            else ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  An
-            axis or a coordinate of the labels that has the name NAME of a variable, or
-            "equilibrium", is called given_NAME.  Variables are V, delta, Q, M_half_space,
-            M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, int8, 0
-            or 1; ``rate_fast`` and ``rate_slow``, the real parts of the eigenvalues, whose
-            imaginary parts are left out; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
-            ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; and ``count``, over the
-            axes of the loads alone.  Padding is NaN, of ``stable`` 0.  Units are those of the
-            result; ``reason`` is left out.
+            Its last axis is ``equilibrium``; the axes before it are those of the loads, of which
+            one load has none.  They have the names that labelled arguments give them.  Without
+            labels a single axis is called ``state``, and several are called ``state_0``,
+            ``state_1`` and so on.  An axis or a coordinate of the labels that has the name NAME of
+            a variable, or "equilibrium", is called given_NAME.
+
+            Variables are V, delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force and
+            torque of this result; ``stable``, int8, 0 or 1; ``rate_fast`` and ``rate_slow``, the
+            real parts of the eigenvalues, whose imaginary parts are left out; ``loss_slip``,
+            ``loss_half_space``, ``loss_cylinder``, ``coefficient`` and ``efficiency``, the fields
+            of :class:`Loss`; and ``count``, over the axes of the loads alone.  Padding is NaN, of
+            ``stable`` 0.  Units are those of the result; ``reason`` is left out.
 
         Examples
         --------
@@ -443,9 +446,10 @@ class Steady(Equilibria):
         'm s-1'
         """
         rates = np.asarray(self.eigenvalues).real
-        found = {name: self[name] for name in (*_FIELDS, "stable")}
-        found |= {"rate_fast": rates[..., 0], "rate_slow": rates[..., 1]}
-        return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
+        variables = {name: self[name] for name in (*_FIELDS, "stable")}
+        variables |= {"rate_fast": rates[..., 0], "rate_slow": rates[..., 1]}
+        # _LOSSES are in the order of the fields of Loss
+        return self._dataset(variables | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
 
 
 def append_axis(unit: Any) -> Any:

@@ -111,8 +111,8 @@ class RollResult(Result):
         return report._replace(steady=Steadiness.along(free, rolls, x, ends=ends))
 
     def _unit(self, name: str) -> str:
-        """Return the unit of the quantity ``name`` for a printed report, as "m s-1"; "" of a
-        dimensionless one.
+        """Return the unit of the quantity ``name`` for a printed report, for example "m s-1"; "" of
+        a dimensionless one.
         """
         return unit_of(attributes(name, self.scale.si))
 
@@ -228,30 +228,37 @@ def _dataset(
 def _describe_drive(result: RollResult) -> tuple[Variables, dict[str, Any]]:
     """Describe the drive of a result by variables and attributes of its dataset.
 
-    Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion,
-    drive_force_time), or where motions have times of their own (motion, drive_force_corner).
-    Attributes are those of :func:`.scale.attributes` with "given: " before long_name, of a schedule
-    ``comment``, of a feedback gain_V and gain_omega.
+    result: :class:`Motion` or :class:`Ensemble`.  Of its scale the units are read, of its drive
+        ``given``: name of each load or prescribed speed -> its numbers, its schedule or its
+        function of time, and the gains of a feedback.
+    Returns (variables, texts), both empty without a drive.
 
-    result: :class:`Motion` or :class:`Ensemble`, of which drive and scale are read.
-    Returns (name -> (dimensions, values, attributes) of variables as ``drive_force`` and
-    ``drive_force_time``, in the units of the roller; name -> text of attributes that describe
-    callables with their gains).  Both are empty without a drive.
+    The variables are name -> (dimensions, values, attributes), in the units of the roller: of a
+    force for example ``drive_force`` and, if it is a schedule, ``drive_force_time``, the times of
+    its corners.  Numbers have the dimensions (), or (motion) where each motion has its own.  The
+    values of a schedule likewise have (drive_force_time) or (motion, drive_force_time).  Where each
+    motion has times of its own, the times have (motion, drive_force_corner), and drive_force_corner
+    takes the place of drive_force_time in the dimensions of the values.  Attributes are those of
+    :func:`.scale.attributes` with "given: " before long_name; a schedule also has ``comment``, a
+    feedback gain_V and gain_omega.
+
+    The texts are name -> text, for example of ``drive_force``, which becomes an attribute of the
+    dataset.  A text describes a function of time, which has no variable, and its gains.
     """
     variables: Variables = {}
     texts: dict[str, Any] = {}
     for name, given in result.drive.given.items():
         key = f"drive_{name}"
         value, gains = _value_and_gains(given)
-        gains = {f"gain_{speed}": gain for speed, gain in gains.items()}
+        gain_attributes = {f"gain_{speed}": gain for speed, gain in gains.items()}
         if callable(value):
             texts[key] = "a function of t" + "".join(
                 f", {gain} = {format_value(x) if np.ndim(x) else f'{x:.15g}'}"
-                for gain, x in gains.items()
+                for gain, x in gain_attributes.items()
             )
             continue
         about = attributes(name, result.scale.si)
-        about = about | {"long_name": f"given: {about['long_name']}"} | gains
+        about = about | {"long_name": f"given: {about['long_name']}"} | gain_attributes
         dims: tuple[str, ...] = ("motion",)
         if isinstance(value, Schedule):
             # of one axis if all motions have the same corners, which then are a coordinate
@@ -259,6 +266,7 @@ def _describe_drive(result: RollResult) -> tuple[Variables, dict[str, Any]]:
             value = value.values
             dims = "motion", f"{key}_time" if times.ndim == 1 else f"{key}_corner"
             variables[f"{key}_time"] = (
+                # times of one axis have the last of the two dimensions, of two axes both
                 dims[-times.ndim :],
                 times,
                 {"long_name": f"times of the given {name}", "units": result.scale.unit("t")},
@@ -284,7 +292,7 @@ def describe_load(given: Any, unit: str) -> str:
     given: a number, a :class:`Schedule`, a function of t, or a :class:`Feedback` of one of these,
     in the unit.
     unit: its unit, "" of a dimensionless one.
-    Returns for example "0.5 N m m-1"; "schedule of 4 corners, smallest 0, largest 1 N m m-1"; "a
+    Returns for example "0.5 N m m-1"; "schedule of 4 times, values from 0 to 1 N m m-1"; "a
     function of t"; and "0.5 N m m-1 - 0.1 omega" of a feedback, without gains that are 0.
     """
     value, gains = _value_and_gains(given)
@@ -311,10 +319,10 @@ def describe_values(t: NDArray, values: NDArray, unit: str) -> str:
     t, values: times and values, (times,), at least one, in the unit of the roller; values are NaN
     at times that the motion did not reach.
     unit: unit of the times, "" of dimensionless ones.
-    Returns "first A, largest in magnitude B (at t = T UNIT), last C", with B the value of
-    the largest magnitude, the first one of equal ones, and numbers to six digits; without it where
-    it is printed like the first or the last; the number alone for one time; "not reached" where all
-    values are NaN.
+    Returns "first A, largest in magnitude B (at t = T UNIT), last C", with numbers to six digits.
+    B is the value of the largest magnitude, of equal ones the first; the words on it are left out
+    where it is printed like A or C.  For one time the result is A alone, and "not reached" where
+    all values are NaN.
     """
     reached = values[~np.isnan(values)]
     if not reached.size:
