@@ -137,7 +137,7 @@ def test_a_product_that_a_range_limits_is_told():
     assert ratio.powers == {"E": -1.0, "T_ref": 1.0}
     assert (
         ratio.limited_by
-        == fit._likelihood.axes(tol.CHI2_95)[0].limited_by
+        == fit._likelihood.unknown_profiles(tol.CHI2_95)[0].limited_by
         == [["T_ref"], ["T_ref"]]
     )
     said = str(fit)

@@ -423,7 +423,7 @@ class CoupledRows:
     the strain of a body.
     graded : whether t is graded at 0 and +-1; else it is the place itself, and the splines are not
     clamped there.
-    fastest : largest u that is allowed; for a last row that is the limit of u infinite 1e300.
+    fastest : largest u that is allowed; 1e300 where the last row is the limit of u infinite.
     slips : whether the contact slips fully beyond the onsets; False: nothing is known there.
     limit : largest abs(Q/mu): 1, or infinite where it is not known.
     errors : field -> largest error found beside the nodes, absolute.
@@ -442,7 +442,8 @@ class CoupledRows:
 
     @cached_property
     def vector(self) -> Floats:
-        """The splines over speed and creep as one read-only vector, which kernels read.
+        """The splines over speed and creep as one vector, which kernels read: (k,), float64,
+        read-only, dimensionless.
 
         It has a head, ln u, t, the edges with their slopes over ln u, and of each field at each
         node the value, both slopes and the mixed derivative (:mod:`.coupled_splines`).  Of a graded
@@ -450,31 +451,33 @@ class CoupledRows:
         """
         from ..kernels.law import coupled_splines as layout
 
-        x = np.log(self.u)
+        ln_u = np.log(self.u)
         fields = self.fields
         if self.graded:
             fields = np.concatenate([fields, self._friction()[..., None]], axis=-1)
-        over_t = self._slopes_in_t(fields)
-        jets = [fields, self._slopes_in_u(fields), over_t, self._slopes_in_u(over_t)]
+        slopes_in_t = self._slopes_in_t(fields)
+        # in the order of a JET of the layout: value, slopes over ln u and over t, mixed derivative
+        jets = [fields, self._slopes_in_u(fields), slopes_in_t, self._slopes_in_u(slopes_in_t)]
         edges = np.stack([self.edges, self._slopes_in_u(self.edges)], axis=-1)
         # in the order of the indices of the layout
         head = [
             self.u.size + 2,  # ROWS
             self.t.size,  # NODES
-            self.graded,
+            self.graded,  # GRADED
             self.u[0],  # FIRST
             self.u[-1],  # LAST
-            *_equal_step(x),  # U_STEP
+            *_equal_step(ln_u),  # U_STEP
             *_equal_step(self.t),  # T_STEP
-            *(layout.HEAD + np.cumsum([x.size, self.t.size, edges.size])),  # T_BEGIN, EDGES, FIELDS
+            # T_BEGIN, EDGES, FIELDS
+            *(layout.HEAD + np.cumsum([ln_u.size, self.t.size, edges.size])),
             fields.shape[-1],  # FIELD_COUNT
             self.fastest,  # MOST
-            self.slips,
-            self.limit,
+            self.slips,  # SLIPS
+            self.limit,  # LIMIT
         ]
-        # field by field: a kernel reads all nodes of one field
+        # (fields, n + 2, m, 4), field by field: a kernel reads all nodes of one field
         planes = np.moveaxis(np.stack(jets, axis=-1), 2, 0)
-        return lock_array(np.concatenate([head, x, self.t, edges.ravel(), planes.ravel()]))
+        return lock_array(np.concatenate([head, ln_u, self.t, edges.ravel(), planes.ravel()]))
 
     def _slopes_in_u(self, values: Floats) -> Floats:
         """Return slopes over ln u, by cubic splines that join the limits smoothly where the nodes
@@ -490,15 +493,15 @@ class CoupledRows:
         # 1: a condition on the first derivative; from an end node to its limit fields are linear in
         # u or 1/u, and the slope over ln u at the node is this difference
         ends = (1, values[1] - values[0]), (1, values[-1] - values[-2])
-        x = np.log(self.u)
+        ln_u = np.log(self.u)
         nodes = values[1:-1]
-        found = np.zeros_like(values)
-        found[1:-1] = (
-            interpolate.CubicSpline(x, nodes, bc_type=ends)(x, 1)
+        slopes = np.zeros_like(values)
+        slopes[1:-1] = (
+            interpolate.CubicSpline(ln_u, nodes, bc_type=ends)(ln_u, 1)
             if self.graded
-            else _slopes(x, nodes)
+            else _slopes(ln_u, nodes)
         )
-        return found
+        return slopes
 
     def _friction(self) -> Floats:
         """Return 2 kappa times the slip loss at the nodes, divided by P V, (n + 2, m), >= 0.
@@ -525,14 +528,14 @@ class CoupledRows:
             # a field that does not depend on creep has slopes of exactly 0, not of rounding
             return np.where(np.ptp(fields, axis=1, keepdims=True) > 0.0, slopes, 0.0)
         middle = self.t.size // 2
-        found = np.zeros_like(fields)
+        slopes = np.zeros_like(fields)
         # each side by itself: fields have a corner in the middle, which the grading of t makes flat
         for side in (slice(0, middle + 1), slice(middle, None)):
             spline = interpolate.CubicSpline(
                 self.t[side], fields[:, side], axis=1, bc_type="clamped"
             )
-            found[:, side] = spline(self.t[side], 1)
-        return found
+            slopes[:, side] = spline(self.t[side], 1)
+        return slopes
 
 
 def grade(t: Any) -> Any:

@@ -542,15 +542,14 @@ class Cover(Bodies):
         )
 
     def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
-        """Return the same bodies with other thicknesses and Poisson's ratios, as one
-        :class:`Cover`.
+        """Return a :class:`Cover` of the same bodies with other thicknesses and Poisson's ratios.
 
         Parameters
         ----------
         thickness : thickness divided by l0, in (0, 1e15], a number or (n,); that of another layer
             stays in proportion.
         nu : Poisson's ratio of the layer, in [0, 0.5], a number or, beside an array of thicknesses,
-            (n,); None: that of this cover, which must then fit.
+            (n,); None: the nu of this cover, whose shape must then fit that of ``thickness``.
 
         Returns
         -------
@@ -570,6 +569,7 @@ class Cover(Bodies):
         """
         other = self.other_thickness
         if other is not None:
+            # all covers have the same ratio of both thicknesses, so that the first elements suffice
             other = np.ravel(other)[0] / np.ravel(self.thickness)[0] * np.asarray(thickness)
         return Cover(
             self.layer,

@@ -67,7 +67,7 @@ class Material(FromPrograms):
     ------
     ParameterError
         A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or
-        surrogates, a shift that is no function.
+        surrogates, a shift that is no function or is a class.
 
     Notes
     -----
@@ -286,9 +286,9 @@ class Material(FromPrograms):
         ------
         ParameterError
             A temperature that the shift does not allow, an array of temperatures, one at or below
-            absolute zero; a shift that is no function or does not return a finite positive number;
-            a ratio of shifts, a time or a frequency of the measured band that no double holds.
-            Other exceptions of the shift pass.
+            absolute zero; a shift that is no function, is a class, or does not return a finite
+            positive number; a ratio of shifts, a time or a frequency of the measured band that no
+            double holds.  Other exceptions of the shift pass.
 
         Warns
         -----
@@ -589,9 +589,9 @@ class Material(FromPrograms):
 
 
 def _check_shift(name: str, shift: Any, allowed: str) -> Any:
-    """Return the ``shift`` of the argument ``name``; raise ParameterError if it cannot be called.
-    The words ``allowed`` say what is allowed beside a function."""
-    if not callable(shift) or isinstance(shift, type):
+    """Return the ``shift`` of the argument ``name``; raise ParameterError if it cannot be called or
+    is a class.  The words ``allowed`` say what is allowed beside a function."""
+    if not callable(shift) or isinstance(shift, type):  # a class, as vr.WLF without (...)
         raise ParameterError(
             name,
             describe_value(shift),

@@ -272,8 +272,8 @@ class Pair:
         return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
     def refuse_thick_layer(self, R: Any) -> None:
-        """Raise ParameterError where a layer on the cylinder is thicker than R, as one whose
-        thickness is in mm.
+        """Raise ParameterError where a layer on the cylinder is thicker than R, for example since
+        its thickness was given in mm.
 
         R: radius, m, a number or (n,), which a thickness may be equal to.
         Raises ParameterError also where its shape does not broadcast with that of R.
@@ -290,14 +290,18 @@ class Pair:
             )
 
     def refuse_other_cover(self, cover: Any, l0: Any) -> None:
-        """Raise ParameterError where the law of a layer is that of another load or radius, and for
-        several cylinders.
+        """Raise ParameterError if a law that was made for a cover does not hold for these bodies.
 
-        cover: :class:`Cover` of the law, which holds for one thickness divided by l0; those that
-            agree to 1e-9, relative, count as the same.
-        l0: as in :meth:`cover`; it follows from load and R.
+        It holds for one thickness divided by l0, which depends on load and R.  So it is refused
+        for another load or radius than it was made for, and for several cylinders.
+
+        cover: the :class:`Cover` for which the law was made.
+        l0: contact length at rest of these bodies as half-spaces, m, as in :meth:`cover`.
+        Raises ParameterError where the thickness of this pair divided by ``l0`` differs from
+        ``cover.thickness`` by more than 1e-9, relative, or is an array.
         """
         own = self.cover(l0)
+        # a shape other than () is that of several cylinders
         if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
             raise described_error(
                 "material",

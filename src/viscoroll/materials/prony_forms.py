@@ -130,28 +130,33 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
     """
     poles = weight.shape[-1]
     constant = constant[..., None]
+    # distance of the middle of each interval from both of its poles
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
     if poles and (constant > 0.0).all():
-        # right of all poles every term is at least -weight over the distance
+        # at a distance d right of the last pole every term is at least -weight/d: from d =
+        # sum(weight)/constant on the sum is >= 0, so that the zero is nearer to that pole.  Twice
+        # this d, where the sum is >= constant/2, stands for the half of an interval
         half = np.concatenate([half, 2.0 * weight.sum(axis=-1, keepdims=True) / constant], axis=-1)
     left = np.broadcast_to(np.arange(half.shape[-1]), half.shape)
-    middle = _sum_near(half, _relative_poles(left, spread), weight, constant)
-    in_left = (middle >= 0.0) | (left == poles - 1)
+    sum_at_middle = _sum_near(half, _relative_poles(left, spread), weight, constant)
+    # the sum increases from pole to pole; right of the last one there is no other to measure from
+    in_left = (sum_at_middle >= 0.0) | (left == poles - 1)
     origin = np.where(in_left, left, left + 1)
+    # 1.0: the zero is right of its origin, -1.0: left of it
     side = np.where(in_left, 1.0, -1.0)
-    seen = _relative_poles(origin, spread)
-    # the sum increases from pole to pole: beyond the zero it is > 0 right of a pole, < 0 left of it
+    poles_from_origin = _relative_poles(origin, spread)
+    # so beyond the zero, seen from its origin, the sum is > 0 right of a pole, < 0 left of it
     low = np.log(np.maximum(half * _CLOSEST, 5e-324))
     high = np.log(half)
     for _ in range(_HALVINGS):
         mid = 0.5 * (low + high)
-        beyond = side * _sum_near(side * np.exp(mid), seen, weight, constant) > 0.0
+        beyond = side * _sum_near(side * np.exp(mid), poles_from_origin, weight, constant) > 0.0
         low = np.where(beyond, low, mid)
         high = np.where(beyond, mid, high)
     distance = np.exp(0.5 * (low + high))
     for _ in range(_NEWTON_STEPS):
-        distance = _improve_distance(distance, origin, side, seen, weight, constant)
-    return np.swapaxes((side * distance)[..., None] - seen, -1, -2)
+        distance = _improve_distance(distance, origin, side, poles_from_origin, weight, constant)
+    return np.swapaxes((side * distance)[..., None] - poles_from_origin, -1, -2)
 
 
 def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
@@ -166,25 +171,28 @@ def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
     return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
 
 
-def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
+def _sum_near(
+    step: NDArray, poles_from_origin: NDArray, weight: NDArray, constant: NDArray
+) -> Floats:
     """Return constant + sum weight_j/(pole_j - s) at one s for each zero, s = pole[origin] + step.
 
     step: signed distance of s from the pole of its origin, in the unit of the poles, not 0, (...,
         zeros); s is at no other pole either.
-    seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
+    poles_from_origin: poles relative to the origin of each zero, in that unit, (..., zeros, poles),
+        [..., i, j].
     weight: weights of the poles, in the unit of the constant times that of the poles, (..., poles).
     constant: the constant, (..., 1).
     Returns the value of the sum at the point of each zero, (..., zeros), in the unit of the
     constant.
     """
-    return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
+    return constant + (weight[..., None, :] / (poles_from_origin - step[..., None])).sum(axis=-1)
 
 
 def _improve_distance(
     distance: NDArray,
     origin: NDArray,
     side: NDArray,
-    seen: NDArray,
+    poles_from_origin: NDArray,
     weight: NDArray,
     constant: NDArray,
 ) -> Floats:
@@ -198,12 +206,13 @@ def _improve_distance(
         unit of the poles, (..., zeros); not changed.
     origin: index of that pole, int, (..., zeros).
     side: 1.0 for a zero right of its origin, -1.0 left of it, (..., zeros).
-    seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
+    poles_from_origin: poles relative to the origin of each zero, in that unit, (..., zeros, poles),
+        [..., i, j].
     weight: weights of the poles, in the unit of the constant times that of the poles, (..., poles).
     constant: the constant of the sum, >= 0, (..., 1).
     Returns a new array of the distances, > 0, (..., zeros), in the unit of the poles.
     """
-    inverse = 1.0 / (seen - (side * distance)[..., None])
+    inverse = 1.0 / (poles_from_origin - (side * distance)[..., None])
     own = np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)
     # with the poles along the first axis numpy adds in their order: results keep their last bits

@@ -249,7 +249,7 @@ def _interval_limits(fit: Any) -> Iterator[str]:
     """
     limited: dict[str, list[str]] = {}
     problem = fit._problem
-    for i, found in fit._likelihood.axes(fit._delta_chi2()).items():
+    for i, found in fit._likelihood.unknown_profiles(fit._delta_chi2()).items():
         name = problem.names[i]
         for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by):
             if end is None:

@@ -212,7 +212,7 @@ class Identification(Result):
         True
         """
         found: dict[str, Interval] = dict.fromkeys(self.values, (None, None))
-        for i, sides in self._likelihood.axes(self._delta_chi2(level)).items():
+        for i, sides in self._likelihood.unknown_profiles(self._delta_chi2(level)).items():
             unknown = self._problem.unknowns[i]
             low, high = (
                 None if end is None else float(unknown.to_value(end)) for end in sides.ends

@@ -116,7 +116,7 @@ class Likelihood:
     others : coordinates of other minima and of the start of the fit, (unknowns,) each, from which
         other branches of the fit are searched; those within 1e-6 of the best are left out.
     ends : coordinates of points at the ends of all intervals, (unknowns,) each, further starts of
-        that search; empty until :meth:`axes` meets an open interval.
+        that search; empty until :meth:`unknown_profiles` meets an open interval.
     minimize : a function of coordinates and powers, as bytes of float64 arrays, that returns the
         :class:`.least_squares.Minimum` from there with the combination of these powers fixed, and
         keeps it, as profiles that are computed again with further starts begin with the same
@@ -191,26 +191,28 @@ class Likelihood:
         rise = float((powers @ self.cov @ powers) / (powers @ self._cov @ powers))
         return self._profiles(delta_chi2 * rise, *powers.tolist())
 
-    def axes(self, delta_chi2: float) -> dict[int, Profile]:
+    def unknown_profiles(self, delta_chi2: float) -> dict[int, Profile]:
         """Return the profile of each active unknown by itself.
 
         The first time that any side of any interval is open, the two outermost points of each
-        interval are added to ``ends``, and all profiles are computed again with these further
+        interval are added to ``ends``: of ``Profile.within`` those with the smallest and the
+        largest coordinate of the unknown.  Then all profiles are computed again with these further
         starts; later calls, also with another bound, do not repeat this.
 
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        Returns a dict, index of the unknown -> :class:`Profile`, whose ends are those of its
-        coordinate, in ascending order of the indices; unknowns that do not act are not in it, so
-        that it is {} where none acts.
+        Returns a dict, index of the unknown -> :class:`Profile`, whose ends are values of the
+        coordinate of this unknown, in ascending order of the indices; unknowns that do not act are
+        not in it, so that it is {} where none acts.
         """
-        found = {i: self.profile(self._unit[i], delta_chi2) for i in self.problem.active}
-        if self.ends or not any(None in profile.ends for profile in found.values()):
-            return found
-        for i, profile in found.items():
+        profiles = {i: self.profile(self._unit[i], delta_chi2) for i in self.problem.active}
+        # None: open
+        if self.ends or not any(None in profile.ends for profile in profiles.values()):
+            return profiles
+        for i, profile in profiles.items():
             along = profile.within[:, i]
             self.ends.extend(profile.within[[along.argmin(), along.argmax()]])
         self._profiles.cache_clear()  # they were made without the starts in ends
-        return self.axes(delta_chi2)
+        return self.unknown_profiles(delta_chi2)
 
     def undetermined(self, delta_chi2: float) -> list[int]:
         """Return the indices of unknowns with a wide interval, and of those correlated with them.
@@ -225,7 +227,7 @@ class Likelihood:
         is wide.
         """
         wide = []
-        for i, profile in self.axes(delta_chi2).items():
+        for i, profile in self.unknown_profiles(delta_chi2).items():
             bounds = self.problem.low[i], self.problem.high[i]
             # an open side reaches to the end of the range
             low, high = (bound if end is None else end for end, bound in zip(profile.ends, bounds))
@@ -298,7 +300,7 @@ class Likelihood:
                 else self.profile(powers, delta_chi2)
             )
             (low, high), limits, *_ = interval
-            if None in (low, high) or high - low > _NARROW:
+            if None in (low, high) or high - low > _NARROW:  # None: open
                 break
             exponents = {
                 unknown.name: p * (value / unknown.slope(value))
@@ -339,8 +341,8 @@ class Likelihood:
         the coordinates, shape (unknowns,), that of largest absolute value 1, and those of unknowns
         outside of ``which`` 0.
         """
-        axes = self.axes(delta_chi2)
-        within = np.concatenate([axes[i].within for i in which])[:, which]
+        profiles = self.unknown_profiles(delta_chi2)
+        within = np.concatenate([profiles[i].within for i in which])[:, which]
         # rows from the least singular value on: along these the points differ least
         for v in np.linalg.svd(within - within.mean(axis=0))[2][::-1]:
             exact = v / v[np.abs(v).argmax()]
@@ -414,9 +416,10 @@ class ProfileWalk:
         1e-5, or the best point that 30 evaluations found; its distance may differ from d where the
         ranges do not allow d.
         """
-        found = self.likelihood.minimize(self.shift_to(d, u).tobytes(), self.powers.tobytes())
-        self.visited.append(found)
-        return found
+        # bytes: keys of the cache
+        minimum = self.likelihood.minimize(self.shift_to(d, u).tobytes(), self.powers.tobytes())
+        self.visited.append(minimum)
+        return minimum
 
     def is_below(self, chi2: float, part: float) -> bool:
         """Return whether the rise of chi2 from the best minimum to another point is below part *

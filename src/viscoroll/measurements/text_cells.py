@@ -95,7 +95,8 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 def fault_of(cell: str, decimal: str) -> str:
     """Return why a cell cannot be read as a number, in words that continue a message; "" if it can.
 
-    cell : text of the cell; an empty one and marks as "nan", "---" and "inf" are missing values.
+    cell : text of the cell; an empty one and marks such as "nan", "---" and "inf" are missing
+        values.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     Returns "" for a number without a mark, or with that decimal mark alone; else the reason: a
     missing value, a possible separator of thousands, no number with that mark, or a number beyond
@@ -103,8 +104,10 @@ def fault_of(cell: str, decimal: str) -> str:
     """
     if _GAP.fullmatch(cell):
         return "is a missing value; write the number, or remove this line"
+    # a number without a mark, or whose only mark is ``decimal``; for decimal "" without a mark
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
         return "is too large, above 1.8e308" if np.isinf(float(cell.translate(_PYTHON))) else ""
+    # separators of thousands, or a mark that the unknown decimal mark leaves open
     if _THOUSANDS.fullmatch(cell) or (not decimal and _NUMBER.fullmatch(cell)):
         return (
             "has a comma or point that may mark decimals or thousands; write for example "

@@ -154,8 +154,8 @@ def read_table(
         A file that cannot be read, that is no text, or has no row of numbers; several tables with
         different headings or rows of units; rows or headings of unlike numbers of cells; rows of
         numbers above the headings; a line among the rows, or between them and the headings, that is
-        neither numbers nor units; no headings, but a comment with names of columns whose separators
-        are not those of the numbers.
+        neither numbers nor units, and no comment and no title (``is_title``); no headings, but a
+        comment with names of columns whose separators are not those of the numbers.
     ParameterError
         A decimal mark that is neither; an encoding that Python does not know.
     """
@@ -261,9 +261,9 @@ class _Layout(NamedTuple):
         ``lines`` is changed: a new line "column 0", "column 1" and so on replaces all lines above
         the numbers, and [0] is returned.
 
-        Raises FileError for rows of numbers above the headings, for a line above the numbers of a
-        file without headings that has as many cells, and for a comment with names of columns whose
-        separators are not those of the numbers.
+        Raises FileError for rows of numbers above the headings; in a file without headings for a
+        line above the numbers that has as many cells and is no comment, and for a comment with
+        names of columns whose separators are not those of the numbers.
         """
         lines = self.lines
         width = self.width
@@ -322,9 +322,9 @@ class _Layout(NamedTuple):
         Returns (headings, without empty ones at the end; units as the file spells them, "" where
         none is given, as many as headings; rows, a list of :class:`Line` without comments, of which
         lines before the next headings that are no rows, as a title, are left out).
-        Raises FileError for a line among the rows that is none and no title, for rows with fewer
-        cells than headings or with texts beyond the last heading, and for a line above them that is
-        neither units nor numbers.
+        Raises FileError for a line among the rows that is no row, no comment and no title, for rows
+        with fewer cells than headings or with texts beyond the last heading, and as :meth:`units`
+        for a line above them.
         """
         line, *body = self.lines[head:end]
         names = self.headings(line)
@@ -380,21 +380,23 @@ class _Layout(NamedTuple):
         width : number of columns, those of the headings.
         Returns a list of ``width`` texts, the unit of each column as the file spells it, with its
         brackets; "" for a column without one, and for all columns if there is no row of units.
-        Raises FileError for another line there that is no comment, a second row of units too.
+        Raises FileError for another line there that is neither a comment nor a title
+        (``is_title``); a second row of units is such a line.
         """
-        found = [""] * width
+        units = [""] * width
         for line in between:
+            # a row of units is cut as headings are
             cells = self.headings(line)
             fits = len(cells) == width or (self.separator != " " and not any(cells[width:]))
-            if fits and _are_units(cells) and not any(found):
-                found = (cells + found)[:width]  # "" behind a line that is shorter
+            if fits and _are_units(cells) and not any(units):
+                units = (cells + units)[:width]  # "" behind a line that is shorter
             elif not (line.comment or self.is_title(line.text)):
                 raise self.fault(
                     line,
                     "below the headings is neither a line of numbers nor the only line of known "
                     f"units {self.cut}: correct it, remove it, or begin it with #",
                 )
-        return found
+        return units
 
 
 def _are_units(cells: list[str]) -> bool:
