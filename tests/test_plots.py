@@ -10,6 +10,7 @@ from run_files import run_of
 
 import viscoroll as vr
 from viscoroll.core.plots import draw, save
+from viscoroll.motion import drawn_summary
 from viscoroll.runs import open_run, run_ensemble
 
 pytestmark = pytest.mark.filterwarnings(
@@ -61,3 +62,11 @@ def test_the_histogram_of_close_values_has_many_bars():
     (stairs,) = right.patches
     assert (stairs.get_data().values > 0).sum() > 40
     assert not right.get_title()
+
+
+def test_one_quantile_of_an_ensemble_is_no_picture():
+    """It has no axis of levels, also where its level is still a coordinate."""
+    motions = vr.presets.RUBBER_CYLINDER.ensemble([1.0, 2.0, 3.0], 10.0, [1.0, 2.0])
+    summary = drawn_summary(motions.to_xarray())
+    assert len(draw(summary).axes) == 6
+    refused(lambda: draw(summary.isel(quantile=0)), "a plot needs")

@@ -491,7 +491,7 @@ def info(arguments: Namespace) -> None:
     option("-n", type=int, default=10_000, help="number of random points (default: 10000)"),
 )
 def validate(arguments: Namespace) -> int:
-    """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
+    """Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law of its scene.
 
     A grid must be that of a scene with alpha.  The law of a cover is compared with solutions of the contact at no
     more than 400 speeds, a table of the coupled solution at no more than 80 states.  The exit code is 1 if an error is
@@ -505,7 +505,8 @@ def validate(arguments: Namespace) -> int:
       viscoroll tables validate rubber.nc
 
     arguments: parsed command line with file, path of a law or a grid; n, number of random points.
-    Returns that code, True for 1; rounding is added to what the file states, and the seed is 0.
+    Returns the exit code as a truth value, True for 1.  For rounding 2e-15 is added to each limit,
+    except where 1e-8 is added or the limit is 1e-12.  The random points are always those of seed 0.
     Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a
     grid of a material or a cylinder.
     """  # noqa: E501

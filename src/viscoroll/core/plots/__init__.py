@@ -542,9 +542,11 @@ def draw(data: Dataset) -> Figure:
     """
     from . import result_figures
 
-    names = {*data.dims, *data, *data.coords}
+    names = {*data.dims, *data.variables}
+    # quantile, input and equilibrium must be dimensions: where one value of them was selected they
+    # are coordinates without an axis, and the dataset has nothing to draw over them
     kinds = (
-        ("quantile" in names, result_figures.distributions),
+        ("quantile" in data.dims, result_figures.distributions),
         ("input" in data.dims, result_figures.sobol_bars),
         ({"t", "regime"} <= names, motion),
         ("equilibrium" in data.dims, equilibria),
