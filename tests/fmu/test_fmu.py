@@ -376,7 +376,7 @@ def call_of(one, name):
 
 @both
 @pytest.mark.parametrize(
-    ("kind", "mode"),
+    "kind, mode",
     [("ModelExchange", mode) for mode in WAYS if mode != "step"]
     + [("CoSimulation", mode) for mode in WAYS if mode not in ("event", "continuous-time")],
 )
@@ -494,7 +494,7 @@ def test_counts_and_times_that_cannot_be_are_refused(built, name):
 
 
 @pytest.mark.parametrize(
-    ("name", "model", "change", "said"),
+    "name, model, change, said",
     [
         ("alike", "Roller", "token", "token: must be {"),
         ("unlike", "Roller", "token", "token: must be {"),

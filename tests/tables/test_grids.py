@@ -160,7 +160,7 @@ def test_creep_nodes_have_less_error_than_equal_steps():
 
 
 @pytest.mark.parametrize(
-    ("lowest", "highest", "alpha"),
+    "lowest, highest, alpha",
     [(1e-3, 2.0, [7.0, 11.0, 16.0]), (1e-3, 0.05, [11.0]), (1.0, 2.0, [1.0])],
 )
 def test_splines_slip_where_the_law_slips(lowest, highest, alpha):
@@ -229,7 +229,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("field", "nodes", "change", "words"), WRONG)
+@pytest.mark.parametrize("field, nodes, change, words", WRONG)
 def test_a_node_that_no_contact_has_is_refused_with_its_place(
     field, nodes, change, words, tmp_path
 ):
