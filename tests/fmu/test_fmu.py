@@ -214,7 +214,9 @@ def test_a_cover_rolls_by_its_law_on_disk(tmp_path):
         law = vr.tables.law(cylinder.replace(coupled=True))
     vr.tables.save(law, tmp_path / "law.nc")
     path = str(tmp_path / "roller.fmu")
-    with pytest.warns(vr.ModelWarning, match="has the fast law.*Dundurs' constant is"):
+    with pytest.warns(
+        vr.ModelWarning, match="has the law with coupled=False.*Dundurs' constant is"
+    ):
         fmu.build(unlike.replace(material=dataclasses.replace(RUBBER, nu=0.3), coupled=True), path)
     with pytest.warns(vr.ModelWarning, match="has the fast law.*states the error"):
         fmu.build(vr.load_law(tmp_path / "law.nc"), path)

@@ -326,7 +326,7 @@ def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
         narrow.extend(far * np.sqrt(fit.noise["M of resistance"].repeats) < 1.96)
     assert np.mean(inside) > least
     assert np.mean(narrow) < tol.IDENTIFY_COVERAGE_NARROW
-    assert f"points in place of {points}" in str(fit)
+    assert f"in place of {points}" in str(fit)
     wide = fit.intervals()["E"]
     one = fit.values["E"]
     assert wide[0] < one - 1.5 * fit.stderr["E"] < one + 1.5 * fit.stderr["E"] < wide[1]
