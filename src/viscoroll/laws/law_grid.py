@@ -311,11 +311,13 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     customary = () if variable.name in variable.dims else _FILL_VALUES
     # NaN where none is declared: no value equals it
     declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
-    filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
+    filled = np.isin(values, declared)
     allowed = "finite (a _FillValue or missing_value that the file declares is read as nan)"
     _refuse_nodes(variable, ~np.isfinite(values), path, allowed)
-    allowed = "another number: the file, or custom, takes this one for a missing value"
+    allowed = "a computed value: the file declares this number as the mark of a missing one"
     _refuse_nodes(variable, filled, path, allowed)
+    allowed = "a computed value: this number usually marks a missing one; compute it"
+    _refuse_nodes(variable, np.isin(np.abs(values), customary), path, allowed)
     # limits beyond which a file declares values as missing (CF conventions 1.11, section 2.5.1)
     about = variable.attrs
     try:
