@@ -220,7 +220,7 @@ WRONG = [
         "Q",
         np.s_[7, 5],
         lambda Q: FILL,
-        "68386869e+36 N m-1 at index 7 of V, 5 of delta: must be another number",
+        "68386869e+36 N m-1 at index 7 of V, 5 of delta: must be a computed value: this",
     ),
     ("M", np.s_[3], lambda M: -M, "at index 3 of V: must be in [0, "),
     ("M", np.s_[1], lambda M: 1e10, "at index 1 of V: must be in [0, "),
