@@ -42,7 +42,7 @@ def each(call, given, error=vr.ParameterError, **usual):
 def refusals(rows):
     """The test of rows that ``each`` makes."""
 
-    @pytest.mark.parametrize(("call", "words", "error"), rows)
+    @pytest.mark.parametrize("call, words, error", rows)
     def test(call, words, error):
         refused(call, *words, error=error)
 

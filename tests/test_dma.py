@@ -83,7 +83,7 @@ CURVES = isotherms(21, 0.0)
 
 
 @pytest.mark.parametrize(
-    ("points", "noise", "allowed"), [(21, 0.0, tol.DMA_SHIFT), (11, 0.005, tol.DMA_SHIFT_NOISY)]
+    "points, noise, allowed", [(21, 0.0, tol.DMA_SHIFT), (11, 0.005, tol.DMA_SHIFT_NOISY)]
 )
 def test_shift_factors_are_found(points, noise, allowed):
     curves = isotherms(points, noise)

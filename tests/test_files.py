@@ -86,7 +86,7 @@ def shared(tmp_path, write):
 
 
 @pytest.mark.parametrize(
-    ("file", "folder", "words"),
+    "file, folder, words",
     [(0o444, 0o777, "it is read-only"), (0o666, 0o555, "Permission denied")],
 )
 def test_what_is_read_only_is_not_replaced(write, shared, file, folder, words):

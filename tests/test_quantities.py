@@ -369,7 +369,7 @@ of_scene = partial(SCENE.roll, 0.5, 0.5, 1.0)
 
 
 @pytest.mark.parametrize(
-    ("name", "unit"),
+    "name, unit",
     [("force", "N/m"), ("torque", "N*m/m"), ("brake", "N*m/m"), ("omega", "rad/s"), ("V", "m/s")],
 )
 def test_schedules_carry_units(name, unit):
@@ -392,7 +392,7 @@ def test_schedules_carry_units(name, unit):
 
 
 @pytest.mark.parametrize(
-    ("name", "units"), [("force", ("N/m", "N*s/m**2", "N*s/m")), ("torque", ("N", "N*s/m", "N*s"))]
+    "name, units", [("force", ("N/m", "N*s/m**2", "N*s/m")), ("torque", ("N", "N*s/m", "N*s"))]
 )
 def test_feedbacks_carry_units(name, units):
     values = 2.0, -0.25, -0.125

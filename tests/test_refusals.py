@@ -241,7 +241,7 @@ def test_errors_of_input_are_value_errors():
 
 
 @pytest.mark.parametrize(
-    ("roller", "name"), [(PAPER.replace(alpha=[2.0, 3.0]), "alpha"), (MANY_SCENES, "material")]
+    "roller, name", [(PAPER.replace(alpha=[2.0, 3.0]), "alpha"), (MANY_SCENES, "material")]
 )
 def test_an_error_has_the_name_of_the_argument(roller, name):
     words = r"^the material \(alpha or T_epsilon, T_sigma; .*\) has shape .*: must be a single"

@@ -97,7 +97,7 @@ def test_a_torque_that_jumps_is_drawn_with_both_sides():
 
 
 @pytest.mark.parametrize(
-    ("call", "most"),
+    "call, most",
     [
         (partial(ROLLER.contact, 0.01, delta=1e-3), 75),
         (partial(ROLLER.roll, 0.05, 0.5, [1e-3]), 130),

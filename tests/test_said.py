@@ -139,7 +139,7 @@ def rows(table):
     return [(words, call) for words, calls in table.items() for call in calls]
 
 
-@pytest.mark.parametrize(("words", "call"), rows(WARNED))
+@pytest.mark.parametrize("words, call", rows(WARNED))
 def test_warned(words, call):
     """Once."""
     first, *others = words.split(" | ")
@@ -147,13 +147,13 @@ def test_warned(words, call):
     assert all(word in message for word in others)
 
 
-@pytest.mark.parametrize(("words", "call"), rows(SILENT))
+@pytest.mark.parametrize("words, call", rows(SILENT))
 def test_not_warned(words, call):
     assert not [each for each in said_of(call) if words in each]
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-@pytest.mark.parametrize(("words", "call"), SAID.items())
+@pytest.mark.parametrize("words, call", SAID.items())
 def test_said(words, call):
     text = str(call())
     assert all(word in text for word in words.split(" | ")), text

@@ -36,7 +36,7 @@ def over(scene, low, high, f):
     return sum(parts)
 
 
-@pytest.mark.parametrize(("scene", "V"), [(ROLLER, 30.0), (ONE, 3.0), (UNLIKE, 20.0)])
+@pytest.mark.parametrize("scene, V", [(ROLLER, 30.0), (ONE, 3.0), (UNLIKE, 20.0)])
 def test_by_quadrature_of_N_and_M(scene, V):
     """The unsteadiness, the speeds at which it is 1 % and 10 %, time and way until there and the
     way left.

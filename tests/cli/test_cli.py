@@ -100,7 +100,7 @@ assert not heavy, heavy"""
 
 
 @pytest.mark.parametrize(
-    ("line", "code", "error"),
+    "line, code, error",
     [
         ("samples . | true; exit ${PIPESTATUS[0]}", 141, ""),
         ("samples . >/dev/full", 2, "viscoroll: error: standard output: No space left on device\n"),
@@ -129,7 +129,7 @@ def test_letters_that_a_stream_lacks_and_a_closed_one(here, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("raised", "code", "words"),
+    "raised, code, words",
     [
         (KeyboardInterrupt, 130, ""),
         (MemoryError, 2, "not enough memory"),
@@ -184,7 +184,7 @@ def test_material_fit(run, here):
 
 
 @pytest.mark.parametrize(
-    ("misfit", "words", "name"),
+    "misfit, words, name",
     [("1e-4", "above the target of 0.01%", "poor.toml"), ("0.9", "is above 5%", "poor.nc")],
 )
 def test_a_fit_that_misses_writes_no_file(here, capsys, misfit, words, name):

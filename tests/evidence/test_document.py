@@ -30,7 +30,7 @@ def test_document_fills_and_refuses(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("file", "section"),
+    "file, section",
     [
         ("measured", "measure"),
         ("ensembles", "ensembles"),

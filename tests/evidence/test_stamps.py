@@ -35,7 +35,7 @@ def block(name, folder):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "outdates"),
+    "old, new, outdates",
     [
         ("2.0", "3.0", True),
         ("*", "/", True),

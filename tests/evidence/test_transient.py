@@ -12,7 +12,7 @@ from pipeline.evidence.prove.unsteady import REFERENCE, compared
 
 
 @pytest.mark.parametrize(
-    ("which", "steady", "rest"),
+    "which, steady, rest",
     [(3, (0.092, 0.50), (0.100, -1.46)), (15, (0.061, 0.29), (0.091, -1.6))],
 )
 def test_errors_and_ways_are_those_of_finer_cells(which, steady, rest):

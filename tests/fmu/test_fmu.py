@@ -214,7 +214,9 @@ def test_a_cover_rolls_by_its_law_on_disk(tmp_path):
         law = vr.tables.law(cylinder.replace(coupled=True))
     vr.tables.save(law, tmp_path / "law.nc")
     path = str(tmp_path / "roller.fmu")
-    with pytest.warns(vr.ModelWarning, match="has the fast law.*Dundurs' constant is"):
+    with pytest.warns(
+        vr.ModelWarning, match="has the law with coupled=False.*Dundurs' constant is"
+    ):
         fmu.build(unlike.replace(material=dataclasses.replace(RUBBER, nu=0.3), coupled=True), path)
     with pytest.warns(vr.ModelWarning, match="has the fast law.*states the error"):
         fmu.build(vr.load_law(tmp_path / "law.nc"), path)
@@ -376,7 +378,7 @@ def call_of(one, name):
 
 @both
 @pytest.mark.parametrize(
-    ("kind", "mode"),
+    "kind, mode",
     [("ModelExchange", mode) for mode in WAYS if mode != "step"]
     + [("CoSimulation", mode) for mode in WAYS if mode not in ("event", "continuous-time")],
 )
@@ -494,7 +496,7 @@ def test_counts_and_times_that_cannot_be_are_refused(built, name):
 
 
 @pytest.mark.parametrize(
-    ("name", "model", "change", "said"),
+    "name, model, change, said",
     [
         ("alike", "Roller", "token", "token: must be {"),
         ("unlike", "Roller", "token", "token: must be {"),

@@ -200,7 +200,7 @@ def two_modes():
     return roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
 
 
-@pytest.mark.parametrize(("body", "size"), [(two_modes, 0.01), (roller, 0.025)])
+@pytest.mark.parametrize("body, size", [(two_modes, 0.01), (roller, 0.025)])
 def test_a_robust_fit_tells_a_wrong_model(body, size):
     """And a sigma far below the noise, of data with outliers."""
     assert fit_with_outliers(2, body(), size).misfit
@@ -304,7 +304,7 @@ def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
 
 
 @pytest.mark.parametrize(
-    ("points", "least"), [(40, tol.IDENTIFY_COVERAGE_FEW), (200, tol.IDENTIFY_COVERAGE)]
+    "points, least", [(40, tol.IDENTIFY_COVERAGE_FEW), (200, tol.IDENTIFY_COVERAGE)]
 )
 @pytest.mark.long
 def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
@@ -326,7 +326,7 @@ def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
         narrow.extend(far * np.sqrt(fit.noise["M of resistance"].repeats) < 1.96)
     assert np.mean(inside) > least
     assert np.mean(narrow) < tol.IDENTIFY_COVERAGE_NARROW
-    assert f"points in place of {points}" in str(fit)
+    assert f"in place of {points}" in str(fit)
     wide = fit.intervals()["E"]
     one = fit.values["E"]
     assert wide[0] < one - 1.5 * fit.stderr["E"] < one + 1.5 * fit.stderr["E"] < wide[1]

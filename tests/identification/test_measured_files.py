@@ -70,7 +70,7 @@ def test_columns_that_are_left_aside_are_told():
 
 
 @pytest.mark.parametrize(
-    ("headings", "kind", "name", "value"),
+    "headings, kind, name, value",
     [
         ("Speed [km/h];Rolling torque [N m/m]", "resistance", "V", 7.2 / 3.6),
         ("Geschwindigkeit (m/min);Kraft [kN/m]", "resistance", "F", 2e3),

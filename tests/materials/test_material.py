@@ -45,7 +45,7 @@ def test_moduli_are_the_sums_over_modes():
 
 
 @pytest.mark.parametrize(
-    ("nu", "g", "k"),
+    "nu, g, k",
     [
         (0.49, [0.3, 0.3], [0.0, 0.0]),
         (0.35, [0.5, 0.3], [0.2, 0.1]),

@@ -130,7 +130,7 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8, 1e-12])
 @pytest.mark.parametrize(
-    ("values", "turns"), [([1, 0, -1], [1.0]), ([1, 0, 0, -1], [2.0]), ([1, 0, 0, 1], [])]
+    "values, turns", [([1, 0, -1], [1.0]), ([1, 0, 0, -1], [2.0]), ([1, 0, 0, 1], [])]
 )
 def test_a_prescribed_speed_that_comes_to_0(values, turns, rtol):
     """What its integration leaves of it is 0: the other speed comes to rest too; V turns where it

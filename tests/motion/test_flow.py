@@ -109,7 +109,7 @@ def test_all_of_these_are_in_the_map(name):
 
 
 @pytest.mark.parametrize(
-    ("scene", "start"),
+    "scene, start",
     [
         (
             (22.822343517896204, 0.8333393570053901, 2.219273908549868, 1.0, 0.26883872),

@@ -56,7 +56,7 @@ def test_the_first_instants():
     assert close(turns.angle[:3], 0.5 * ROUNDED.gamma / ROUNDED.j * push * t**2, 1e-6)
 
 
-@pytest.mark.parametrize(("scene", "spin"), [(HELD, 1e1), (HELD, 1e9), (HELD_LONG, 3.3e8)])
+@pytest.mark.parametrize("scene, spin", [(HELD, 1e1), (HELD, 1e9), (HELD_LONG, 3.3e8)])
 def test_a_held_cylinder_takes_no_steps(scene, spin):
     """M(V) = 2 mu: V stands still however long, then slip ends; the spin falls linearly.  The last
     one once took 7,575 steps.

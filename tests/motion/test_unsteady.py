@@ -18,7 +18,7 @@ TOO_SLOW = "became too slow for unsteady=True"
 
 
 @pytest.mark.parametrize(
-    ("scene", "start", "t", "drive"),
+    "scene, start, t, drive",
     [
         (ROLLER, (30.0, 29.9), T, {}),
         (RUBBER, (1.0, 0.999), T, {"force": 0.004, "torque": 0.01}),
@@ -58,7 +58,7 @@ def test_from_rest_and_to_it():
 
 
 @pytest.mark.parametrize(
-    ("scene", "V0", "level"),
+    "scene, V0, level",
     [(RUBBER, 1.0, -0.5), (RUBBER.replace(j=4.0), 1.0, -0.2), (ROLLER, 30.0, 1.0)],
 )
 def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
@@ -75,7 +75,7 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # kappa below 1
 @pytest.mark.parametrize(
-    ("scene", "start", "until", "force", "torque", "last"),
+    "scene, start, until, force, torque, last",
     [
         ((2.6, 15.2, 0.34, 30.6, 2.0), (-0.01996, -0.01995), 0.13, 0.114, -0.723, 1),
         ((8.1, 1.84, 0.053, 5.9, 0.23), (-0.1476, -0.1464), 0.0484, 0.496, 0.115, 1),

@@ -42,7 +42,9 @@ def test_a_store_shows_itself(keep):
         refused(found.motions, "keep", error=vr.FileError)
         return
     assert found.motions().V.shape == (40, 2)
-    assert all(words in repr(found) for words in ("40 motions", "m s-1", "40: reached"))
+    assert all(
+        words in repr(found) for words in ("40 motions", "m s-1", "40 of 40 motions: reached")
+    )
     assert "loc = 0.2" in found.run_file
     assert found.to_xarray().identical(xr.open_zarr("s.zarr", chunks=None))
     assert len(found.plot().axes) == 4

@@ -195,7 +195,7 @@ def test_a_run_that_ended_while_it_grew_goes_on(smaller, run, whole, monkeypatch
 
 
 @pytest.mark.parametrize(
-    ("before", "now", "words"),
+    "before, now, words",
     [
         (
             "",

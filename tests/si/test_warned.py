@@ -39,7 +39,7 @@ def test_where_the_data_end():
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 @pytest.mark.parametrize(
-    ("growth", "thickness"),
+    "growth, thickness",
     [(0.0, None), (0.12, None), (0.3, None), pytest.param(0.12, 0.01, marks=pytest.mark.long)],
 )
 def test_data_over_the_band_determine_M(growth, thickness):

@@ -43,7 +43,7 @@ def scene():
     return scene_of(law_of(BELT, 0.3))
 
 
-@pytest.mark.parametrize(("material", "mu", "count"), [(BELT, 0.3, 40), (BOTH_SLIP, 0.2, 80)])
+@pytest.mark.parametrize("material, mu, count", [(BELT, 0.3, 40), (BOTH_SLIP, 0.2, 80)])
 def test_table_holds_states_beside_its_nodes(material, mu, count):
     pair = pair_of_scene(scene_of(material, mu))
     found = measure_errors(law_of(material, mu).coupled, pair, count, 7)
@@ -94,7 +94,7 @@ def test_free_creepage_is_that_with_stick(scene):
 
 
 @pytest.mark.parametrize(
-    ("omega0", "force", "torque"), [(1.0, 0.0, -0.35), (1.0, -0.1, 0.0), (0.5, 0.0, 0.0)]
+    "omega0, force, torque", [(1.0, 0.0, -0.35), (1.0, -0.1, 0.0), (0.5, 0.0, 0.0)]
 )
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_motions_solve_the_equations_and_keep_energy(scene, omega0, force, torque):

@@ -160,7 +160,7 @@ def test_creep_nodes_have_less_error_than_equal_steps():
 
 
 @pytest.mark.parametrize(
-    ("lowest", "highest", "alpha"),
+    "lowest, highest, alpha",
     [(1e-3, 2.0, [7.0, 11.0, 16.0]), (1e-3, 0.05, [11.0]), (1.0, 2.0, [1.0])],
 )
 def test_splines_slip_where_the_law_slips(lowest, highest, alpha):
@@ -220,7 +220,7 @@ WRONG = [
         "Q",
         np.s_[7, 5],
         lambda Q: FILL,
-        "68386869e+36 N m-1 at index 7 of V, 5 of delta: must be another number",
+        "68386869e+36 N m-1 at index 7 of V, 5 of delta: must be a computed value: this",
     ),
     ("M", np.s_[3], lambda M: -M, "at index 3 of V: must be in [0, "),
     ("M", np.s_[1], lambda M: 1e10, "at index 1 of V: must be in [0, "),
@@ -229,7 +229,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("field", "nodes", "change", "words"), WRONG)
+@pytest.mark.parametrize("field, nodes, change, words", WRONG)
 def test_a_node_that_no_contact_has_is_refused_with_its_place(
     field, nodes, change, words, tmp_path
 ):

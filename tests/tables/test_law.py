@@ -79,7 +79,7 @@ def test_a_file_has_the_bits_of_its_material(tmp_path, name):
 
 
 @pytest.mark.parametrize(
-    ("given", "functions", "place"),
+    "given, functions, place",
     [
         ({"material": 11.0}, FUNCTIONS, (10, 0)),
         ({"material": BODIES}, FUNCTIONS, (10, 0)),

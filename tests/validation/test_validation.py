@@ -37,7 +37,7 @@ def test_sample_holds_every_corner():
 
 
 @pytest.mark.parametrize(
-    ("name", "checks", "some"),
+    "name, checks, some",
     [
         ("contact", lambda: random_state_checks(100, 0), all),
         ("roll", lambda: motion_checks(3), any),

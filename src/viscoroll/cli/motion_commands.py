@@ -147,7 +147,8 @@ def stress(arguments: Namespace) -> None:
         "--t",
         type=numbers,
         required=True,
-        help="output times as LOW:HIGH:COUNT[:log] or 0.1,0.2,0.4; in s for [cylinder]",
+        help="output times as LOW:HIGH:COUNT[:log] or 0.1,0.2,0.4; in s for [cylinder], divided "
+        "by T_ref for [scene] and presets",
     ),
     add_table,
 )

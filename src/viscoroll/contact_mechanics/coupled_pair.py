@@ -342,9 +342,9 @@ def pair_of_scene(scene: Any) -> CoupledPair:
         raise described_error("material", "is a grid of Q and M", allowed)
     if np.size(scene.alpha) != 1 or scene.material_array is not None:
         shape = np.shape(scene.alpha)
-        allowed = "a single material with method='coupled': make a call for each"
-        given = "the material (alpha or T_epsilon, T_sigma; of a layer also R, load)"
-        sentence = f"{given} has shape {shape}: must be {allowed}"
+        allowed = "one number each with method='coupled': make a call for each"
+        given = "alpha, T_epsilon, T_sigma or material, or (of a layer) R or load,"
+        sentence = f"{given} has shape {shape}: must be {allowed} element of the array"
         name = "alpha" if material is None else "material"
         raise ParameterError(name, shape, allowed, sentence)
     if material is None:

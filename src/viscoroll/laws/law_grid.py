@@ -46,8 +46,7 @@ UNITS = {"V": "m/s", "delta": "1", "Q": "N/m", "M": "N", "M_half_space": "N", "M
 _METHODS = ("linear", "quadratic", "cubic")
 #: error of a value relative to the largest of its variable: files may have six digits only
 _ROUNDING = 1e-5
-#: fraction of the largest |Q| by which Q may fall where delta grows: other programs iterate to
-#: about this
+#: fraction of the largest |Q| by which Q may fall with delta: to this, other programs iterate
 _NOISE = 1e-3
 #: moduli of what programs write where they have no value: the default of netCDF, and habits
 _FILL_VALUES = np.array(
@@ -309,13 +308,14 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     """
     values = variable.values
     customary = () if variable.name in variable.dims else _FILL_VALUES
-    # NaN where none is declared: no value equals it
+    # NaN, which no value equals, where none is declared
     declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
-    filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
     allowed = "finite (a _FillValue or missing_value that the file declares is read as nan)"
     _refuse_nodes(variable, ~np.isfinite(values), path, allowed)
-    allowed = "another number: the file, or custom, takes this one for a missing value"
-    _refuse_nodes(variable, filled, path, allowed)
+    allowed = "a computed value: the file declares this number as the mark of a missing one"
+    _refuse_nodes(variable, np.isin(values, declared), path, allowed)
+    allowed = "a computed value: this number usually marks a missing one; compute it"
+    _refuse_nodes(variable, np.isin(np.abs(values), customary), path, allowed)
     # limits beyond which a file declares values as missing (CF conventions 1.11, section 2.5.1)
     about = variable.attrs
     try:
