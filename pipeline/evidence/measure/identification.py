@@ -13,7 +13,6 @@ configuration.  Exit code 1 if a bound asked is exceeded.
 
 import os
 import sys
-import time
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
@@ -30,6 +29,7 @@ from viscoroll.measurements.profile import ProfileWalk
 
 from ...stage import Row, Sizes
 from ..results import run_parts
+from ..timing import timed
 
 TRUTH = {"mu": 0.3, "E": 3e6, "E_1": 9.0, "T_ref": 1e-3}
 SHAPE = ("E", "E_1", "T_ref")
@@ -339,36 +339,39 @@ def times(sizes):
     """Seconds of processor of a fit of five unknowns to 200 points, from 30 % off, of its five
     profiles, of a fit from several starts, and of one prediction of the data by a new law.
     """
-    off = {name: 1.3 * value for name, value in TRUTH.items()}
-    rows = []
     cases = {
         "launched without rotation, V: 5 unknowns, 200 points": THROWN,
         "M across its maximum and Q: 4 unknowns, 61 points": [*HUMPED, traction(0.1)],
     }
-    for name, records in cases.items():
-        seconds = []
-        for seed in range(sizes["repeats"] + 1):
-            search = partial(fitted, records, sizes["seed"] + seed, start=off)
-            begun = [time.process_time()]
-            fit = search()
-            for work in (fit.intervals, partial(search, starts=sizes["searches"])):
-                begun.append(time.process_time())
-                work()
-            begun.append(time.process_time())
-            at = (
-                fit._likelihood.best.u
-                + 1e-3 * np.eye(len(fit.values))[list(fit.values).index("E_1")]
-            )
-            fit._problem.residuals(at)
-            seconds.append(np.diff([*begun, time.process_time()]))
-        timed = ("fit_s", "profiles_s", "searches_s", "prediction_s")
-        taken = dict(zip(timed, np.median(seconds[1:], axis=0).tolist(), strict=True))
-        ratios = {
-            "fit": taken["fit_s"] / taken["prediction_s"],
-            "profiles": taken["profiles_s"] / taken["fit_s"],
-        }
-        rows.append({"case": name, "searches": sizes["searches"]} | taken | ratios)
-    return rows
+    return [
+        {"case": name, "searches": sizes["searches"]} | _times_of(records, sizes)
+        for name, records in cases.items()
+    ]
+
+
+def _times_of(records, sizes):
+    """What a fit to records takes, as :func:`times`."""
+    random = np.random.default_rng(sizes["seed"])
+    search = partial(
+        fitted, records, sizes["seed"], start={name: 1.3 * value for name, value in TRUTH.items()}
+    )
+
+    def predict():
+        at = roller(TRUTH | {"E_1": random.uniform(8.0, 10.0)})
+        return [each.model(at.replace(**each.overrides), {}) for each in records]
+
+    calls = {
+        "fit_s": search,
+        "profiles_s": lambda: search().intervals(),
+        "searches_s": partial(search, starts=sizes["searches"]),
+        "prediction_s": predict,
+    }
+    found = timed({name: (1e9, call) for name, call in calls.items()}, sizes["repeats"])
+    taken = {name: each["ns"] for name, each in found.items()}
+    taken["profiles_s"] -= taken["fit_s"]
+    taken["fit"] = taken["fit_s"] / taken["prediction_s"]
+    taken["profiles"] = taken["profiles_s"] / taken["fit_s"]
+    return taken
 
 
 PARTS = {
