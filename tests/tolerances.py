@@ -531,6 +531,8 @@ COVER_ON_STEEL = 1e-3
 HEAT_BALANCE = 1e-10
 #: Closed forms of a constant shift: roundings, after the balance was refined with the shift itself.
 HEAT_CLOSED = 1e-12
+#: Mean temperature of a ring: the test's own logarithms cancel, by (R/h)^2 roundings at h/R = 1e-2.
+HEAT_RING = 2e-11
 #: The same call in other units: roundings of the conversion, which the search for the balance
 #: enlarges.
 HEAT_UNITS = 1e-9

@@ -146,7 +146,7 @@ CASES = {
     ),
     "a tan delta that is wrong": (
         "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 2*tan>\n",
-        "or remove one of these columns",
+        "remove one of these columns",
         lambda text, *_: (re.sub(r"(?m);[^;]*$", "", text), {}),
     ),
     "a magnitude of few digits": (

@@ -273,7 +273,7 @@ def assess_small_contact(reach: Any) -> Assumption:
     return Assumption(
         reach <= REACH_LIMIT,
         reach,
-        f"the contact reaches {far:.2g} R from the axis; up to {REACH_LIMIT} R is allowed, as the "
+        f"the contact reaches {far:.3g} R from the axis; up to {REACH_LIMIT} R is allowed, as the "
         f"model replaces the circle by a parabola (error of its height {25.0 * far * far:.2g} %)"
         + "; reduce the load, or take a stiffer material"
         * (far > REACH_LIMIT),

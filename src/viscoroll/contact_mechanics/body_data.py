@@ -200,6 +200,9 @@ _SHORT_OVER_THICKNESS = 0.2
 #: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness
 #: matter.
 _LEAST_SHARE = 0.01
+#: Transit frequency times the shortest relaxation time from which on a series has little loss: that
+#: of its last term has fallen to a fifth of its maximum.
+BEYOND_SERIES = 10.0
 #: kappa lam at which the peak of an ellipse of pressure is E/(1 - nu^2), as in Hertz' theory.
 _ABSURD = 0.25
 #: (Lowest, highest) speed, m/s, of data that hold at no speed.
@@ -277,20 +280,43 @@ class BodyData:
         ParameterError for a layer too thin for its law.
         """
         records = self.records.values()
-        series = self.scene.series
-        if not records or series is None:
+        if not records or self.scene.series is None:
             return None
         lowest, highest = zip(*(data.transit_band for data in records), strict=True)
-        ends = np.array([max(lowest), min(highest)]) * self.T_ref
-        if self.scene.cover is not None:
-            u = np.exp2(_OCTAVES_OF_SPEED)
-            (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
-            # the transit frequency |V|/(lam l0) is u/lam, from which u = |V|/l0 is looked up
-            ends = np.exp(np.interp(np.log(ends), np.log(u / lam), np.log(u)))
-        else:
-            ends = transit_speeds(series, ends)
-        low, high = (ends / self.T_ref).tolist()
+        low, high = self._rates_at(np.array([max(lowest), min(highest)])).tolist()
         return low, high
+
+    def _rates_at(self, frequencies: Floats) -> Floats:
+        """Return |V|/l0, 1/s, at which the transit frequency |V|/(lam l0) has given values, 1/s, >
+        0, (n,); not for an array of materials.
+        """
+        frequencies = frequencies * self.T_ref
+        if self.scene.cover is None:
+            series: Any = self.scene.series
+            return transit_speeds(series, frequencies) / self.T_ref
+        u = np.exp2(_OCTAVES_OF_SPEED)
+        (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
+        # of u = |V|/l0 the transit frequency is u/lam, from which u is looked up
+        return np.exp(np.interp(np.log(frequencies), np.log(u / lam), np.log(u))) / self.T_ref
+
+    @cached_property
+    def series_speeds(self) -> tuple[float, float] | None:
+        """Return (0, highest |V|), m/s, at which the transit frequency of each cylinder is below 10
+        divided by the shortest relaxation time of each rubber whose band is not known.
+
+        Far above that speed a series has almost no loss, but a rubber has.  None without a body
+        that has a temperature shift, no ``measured`` and a share of the compliance of at least
+        0.01, and for an array of materials.
+        """
+        ends = [
+            BEYOND_SERIES / (float(np.min(body.prony.tau)) * body.T_ref)
+            for body, share in self.bodies.values()
+            if share >= _LEAST_SHARE and body.measured is None and body.shift is not None
+            if body.prony.tau.size
+        ]
+        if not ends or self.scene.series is None:
+            return None
+        return 0.0, float(self._rates_at(np.array([min(ends)]))[0] * np.min(self.l0))
 
     @cached_property
     def measured_speeds(self) -> tuple[float, float] | None:
@@ -350,7 +376,8 @@ class BodyData:
         example where the contact at rest is longer than the radius, or the radius seems to be in
         mm.
         """
-        bands = [self.measured_speeds, self.wave_speed and (0.0, self.wave_speed)]
+        waves = self.wave_speed and (0.0, self.wave_speed)
+        bands = [self.measured_speeds, self.series_speeds, waves]
         if self.soft_for_load or not (self.small_at_rest and self.in_metres):
             bands.append(NO_SPEEDS)
         known = [band for band in bands if band]

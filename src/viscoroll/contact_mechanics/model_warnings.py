@@ -28,7 +28,7 @@ from .assumptions import (
     assess_measured_band,
     transit_frequency,
 )
-from .body_data import BodyData, extent_of, is_outside
+from .body_data import BEYOND_SERIES, BodyData, extent_of, is_outside
 from .free_rolling import FreeRolling, curve_of
 from .model_validity import STEADY_LIMIT
 from .parameters import PARAMETERS, Parameters, Roller
@@ -71,6 +71,13 @@ _MILLIMETRES = (
 _SOFT = (
     "the peak pressure on the layer exceeds its modulus E/(1 - nu^2): strains are not small "
     "(are moduli in Pa, the load in N/m and lengths in m?)"
+)
+#: Warning of a contact far above the rates of a series.
+_BEYOND_SERIES = (
+    "M is probably too small: at this V and temperature the transit frequency (V divided by the "
+    f"contact length) is above {BEYOND_SERIES:g} divided by the shortest relaxation time of the "
+    "Prony series, so that the series has almost no loss, which a rubber has; give a series with "
+    "shorter times"
 )
 #: Calls that report the assumptions of a motion.
 _REPORTS = "validity(V) of the roller, or validity() of the result,"
@@ -144,6 +151,8 @@ def warn_of_contact(
         )
     if data.measured_speeds is not None and is_outside(of_band, data.measured_speeds):
         _warn_of_band(data, reduced)
+    if data.series_speeds and is_outside(of_band, data.series_speeds) and not is_worker():
+        warn_of_model(_BEYOND_SERIES)
 
 
 def _absurd_sizes(data: BodyData) -> list[str]:

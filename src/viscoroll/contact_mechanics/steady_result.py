@@ -82,7 +82,7 @@ class Diagnosis(NamedTuple):
     states : all states, whether or not the friction suffices.
     number : equilibria of each load, (n,).
     maximum : (largest kappa M, kappa V there), dimensionless; None with feedback, for elastic
-        bodies, and on a table of the coupled solution.
+        bodies, on a table of the coupled solution, and where every load has an equilibrium.
     elastic : whether the bodies are elastic and no gain and no given V determines the speed, so
         that M = 0 at every speed.
     """

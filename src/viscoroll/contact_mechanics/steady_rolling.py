@@ -505,9 +505,9 @@ def steady(
         rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
     count = np.bincount(existing.load, minlength=loads.mu.size)
-    maximum = (
-        None if gained or law.elastic or law.coupled is not None else branches(law, 0.0).maximum
-    )
+    # only a reason states it, and the extrema of M take as long as the states
+    unstated = count.all() or gained or law.elastic or law.coupled is not None
+    maximum = None if unstated else branches(law, 0.0).maximum
     reasons = Diagnosis(
         loads=loads, scale=scale, states=rolling, number=count, maximum=maximum, elastic=neutral
     )

@@ -317,7 +317,8 @@ class Values(Result):
         names = ", ".join(self._values)
         raise AttributeError(
             f"{name!r} is not in this result: it contains {names}.  Some "
-            "functions, such as contact, compute further quantities by fields="
+            "functions compute further quantities if asked, as contact by fields=, and stress by "
+            "method='coupled'"
         )
 
     def __dir__(self) -> Iterable[str]:

@@ -334,17 +334,15 @@ def conductance(
     """Return the heat that a cylinder gives off per kelvin of its mean temperature above ambient,
     from film and conduction.
 
-    Heat arises evenly in a solid cylinder, or in a cover of which the other side is at a core; it
-    is conducted to the surface (in series with the film) and, of a cooled core, to the core too (in
-    parallel).  The mean temperature follows in closed form, of a cover as of a slab of mean radius
-    R - thickness/2.
+    Heat arises evenly in a solid cylinder, or in a cover (a ring on a core).  It is conducted to
+    the surface, and to the core if that is cooled; the mean temperature follows in closed form.
 
     Parameters
     ----------
     R : radius of the surface, m, > 0; each number may be an array, and they broadcast.
     film : film coefficient of the surface, W/(m2 K), > 0; default 20, of a roller that turns in
         air: from 10 (slow, in still air) to 50 (10 m/s).
-    thickness : of the cover, m, > 0, below R; None: a solid cylinder.
+    thickness : of the cover, m, > 0, at most 0.999 R; None: a solid cylinder.
     conductivity : of the rubber, W/(m K), > 0 (0.15 to 0.3); None: the film alone counts.
     core : "insulated", a core that takes no heat, or "cooled", one at ambient temperature (with a
         thickness and a conductivity).
@@ -357,7 +355,7 @@ def conductance(
     Raises
     ------
     ParameterError
-        Values out of range, a thickness of R or more, a cooled core without thickness and
+        Values out of range, a thickness above 0.999 R, a cooled core without thickness and
         conductivity.
 
     Examples
@@ -366,6 +364,8 @@ def conductance(
     >>> round(vr.conductance(0.1, film=20.0), 3)  # 2 pi R film
     12.566
     """
+    from scipy.special import hyp2f1
+
     check_choice("core", core, "cooled", "insulated")
     given: Any = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
     arrays: Any = {
@@ -381,25 +381,24 @@ def conductance(
             "is 'cooled', but thickness and conductivity of the cover are not both given",
             "'insulated', or given with both",
         )
-    if h is not None and np.any(h >= arrays["R"]):
+    if h is not None and np.any(h > 0.999 * arrays["R"]):  # beyond, 2F1 loses its digits
         raise ParameterError(
             "thickness",
             format_value(h),
-            f"below R = {format_value(R)}, the outer radius of the cover (both in m)",
+            f"at most 0.999 R, with R = {format_value(R)}, the outer radius of the cover (in m)",
         )
-    # circumference at the middle of the cover; of the surface where nothing is conducted
-    width = 2.0 * math.pi * (arrays["R"] - 0.5 * h if is_conducting else arrays["R"])
-    # with a source q of unit volume the mean rise of a slab is q h^2/(12 k) (4 + B)/(1 + B) if one
-    # side is at ambient and the other has a film, B = film h/k; above the surface it is q h^2/(3 k)
-    # if the other side is insulated, and q R^2/(8 k) in a solid cylinder
+    outer = arrays["R"]
+    y: Any = h * (2.0 * outer - h) / (outer - h) ** 2 if is_conducting else None
+    # y = (R/a)^2 - 1, a = R - h; 2F1 in place of logarithms, so that thin rings lose no digits
     if core == "cooled":
-        biot = arrays["film"] * h / k
-        found = width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+        biot = arrays["film"] * outer / k
+        rise = y * (hyp2f1(1, 1, 4, -y) + 0.125 * biot * y * hyp2f1(2, 2, 4, -y)) / 12.0
+        found = math.pi * k * (1.0 + 0.5 * biot * np.log1p(y)) / rise
     else:
-        within = (
-            0.0 if k is None else 1.0 / (8.0 * math.pi * k) if h is None else h / (3.0 * k * width)
-        )
-        found = 1.0 / (1.0 / (width * arrays["film"]) + within)
+        # mean rise above the surface; 1/8 of a solid cylinder
+        rise = 0.125 if y is None else y * hyp2f1(1, 3, 4, -y) / 12.0
+        within = 0.0 if k is None else rise / (math.pi * k)
+        found = 1.0 / (1.0 / (2.0 * math.pi * outer * arrays["film"]) + within)
     return found if np.ndim(found) else float(found)
 
 

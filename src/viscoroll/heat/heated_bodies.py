@@ -71,6 +71,8 @@ _SAMPLED_RANGE = -150.0, 1000.0
 _SAMPLES = 5001
 #: rise of log2 a_T between samples that is rounding
 _ROUNDING = 1e-12
+#: dimensionless speed at which the moments are those of the limit of low speed, to rounding
+_SLOWEST = 1e-30
 #: smallest divisor: the quotient for a divisor <= 0 is then larger than any other
 _LEAST = 1e-300
 #: a_T and sqrt(b_T) at m temperatures, (m,) each, dimensionless; the second may be a number
@@ -374,7 +376,7 @@ class HeatStates:
 
         factors: a_T and sqrt(b_T) at these temperatures, (m,) each, or a number.
         n, V, more: as in :meth:`heat`; at V = 0, where the losses are 0, the state under loads is
-            that of a dimensionless speed of 1.
+            that of the limit of low speed.
         Returns (the :data:`MOMENTS` divided by P R, (3, m), NaN where the friction does not
         suffice; loss in rolling and loss in slip, W/m, (m,) each).
         """
@@ -388,7 +390,7 @@ class HeatStates:
         vectors = {name: getattr(self.loads, name)[n] for name in ("force", "torque", "mu", "j")}
         kappa = self.loads.kappa[n] * root_b / np.sqrt(more)
         loads = self.loads._replace(kappa=kappa, **vectors)
-        moving = np.where(speed == 0.0, 1.0, speed)
+        moving = np.where(speed == 0.0, _SLOWEST, speed)
         rows = states_at(self.law, loads, np.arange(n.size), sign, moving).rows
         half_space, cylinder, delta = rows[[Field.M_HALF_SPACE, Field.M_CYLINDER, Field.DELTA]]
         moments = np.where(np.isnan(delta), np.nan, [half_space + cylinder, half_space, cylinder])

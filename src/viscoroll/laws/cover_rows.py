@@ -280,7 +280,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
             f"{thickness:.3g}",
             f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long; "
             "take a thicker layer or a smaller load (l0: contact length at rest of half-spaces of "
-            "the same materials)",
+            "the same materials; are moduli in Pa, the load in N/m and lengths in m?)",
         )
     if not modes.series.a.size:
         L, lam = slow_limit[_LIMITED[:2]]

@@ -561,7 +561,7 @@ class DynamicModuli(ModuliRecord):
             warn_of_model(
                 f"{self.source or 'record'}: the arrays omega, storage and loss do not tell "
                 f"{' and '.join(lost)}: give the whole record in their place, as "
-                "fit_prony(record)"
+                "fit_prony(record), unless you state them by temperature= and mode="
             )
         return super().__iter__()
 

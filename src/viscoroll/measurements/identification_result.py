@@ -500,13 +500,15 @@ class Identification(Result):
 
         The rows are :class:`SummaryRow`: one for each unknown with its value and standard deviation
         ("inf" where it does not act), in SI units without their names, and the last with chi2 and
-        the degrees of freedom.
+        the degrees of freedom, or that a standard deviation was estimated.
         """
         title = f"Identification, unknowns: {len(self.values)}, points: {self._problem.y.size}"
         rows = [
             SummaryRow(name, f"{value:.6g} +- {self.stderr[name]:.2g}")
             for name, value in self.values.items()
         ]
+        if any(column.estimated for column in self._problem.columns):  # then chi2 is about dof
+            return title, [*rows, SummaryRow("sigma", "estimated from the residuals")]
         return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} (noise: about {self.dof})")]
 
     __str__ = report

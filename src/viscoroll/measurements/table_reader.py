@@ -114,9 +114,9 @@ def storage_and_loss(
         values, half = columns[name]
         table.require(
             np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half,
-            f"{name} differs by more than {AVERAGED:.0%} from that of {both}: give the unit of "
-            "one, as units={'tan delta': '%'} (in a shell: --units 'tan delta=%'), or remove one "
-            "of these columns",
+            f"{name} differs by more than {AVERAGED:.0%} from that of {both}: remove one of these "
+            "columns, or, if one has another unit, give it, as units={'tan delta': '%'} (in a "
+            "shell: --units 'tan delta=%')",
         )
     return storage, loss
 

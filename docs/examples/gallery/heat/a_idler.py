@@ -16,7 +16,7 @@ import viscoroll as vr
 rubber = vr.Material(
     E=3e6,
     nu=0.49,
-    prony=vr.Prony(E=[2.0, 40.0], tau=[1.0, 1e-2]),
+    prony=vr.Prony(E=[2.0, 40.0, 60.0, 100.0], tau=[1.0, 1e-2, 1e-4, 1e-6]),
     T_ref=0.02,
     temperature=20.0,
     shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
