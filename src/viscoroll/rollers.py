@@ -164,7 +164,7 @@ class Scene(Methods, Parameters):
 
 # --- A roller in SI units ---
 
-#: Names of the parameters of the paper's material.
+#: Names of the parameters of the material of the paper, the standard linear solid (SLS).
 _SLS = ("E", "nu", "T_epsilon", "T_sigma")
 #: Names of the fields that are numbers.
 _NUMBERS = ("R", "m", *_SLS, "mu", "j", "g", "pressed")
@@ -240,7 +240,8 @@ class Cylinder(Methods):
     plane: Plane
     material: Material | LawTable | None
     base: Material | None
-    #: the load as it was given: :meth:`replace` with another m makes the weight anew
+    #: the load as it was given; None: it is the weight, which :meth:`replace` with another m or g
+    #: computes anew
     pressed: Any
     coupled: bool | None
     _names = _NUMBERS
@@ -269,20 +270,22 @@ class Cylinder(Methods):
 
         They become floats or read-only arrays in SI units.
 
-        pressed: the load by its name as a field, for :func:`dataclasses.replace`; not used beside
-            ``load``.  All others are parameters of the class.
+        pressed: the load P, as ``load``, N/m; not used where ``load`` is given.  Callers give
+            ``load``.  :func:`dataclasses.replace` gives ``pressed``, the field in which the load is
+            kept, as ``load`` is a property.
+        All others are parameters of the class.
         Raises ParameterError as the class says.
         """
-        values = vars(self)  # by it, as the class is frozen
+        values = vars(self)  # fields are set through ``__dict__``, as the class is frozen
         values.update(R=R, m=m, E=E, nu=nu, T_epsilon=T_epsilon, T_sigma=T_sigma, mu=mu, j=j, g=g)
         values.update(plane=plane, material=material, base=base)
         values["pressed"] = pressed if load is None else load
         values["coupled"] = coupled if coupled is None else check_bool("coupled", coupled)
         missing = ", ".join(name for name in _SLS if values[name] is None)
-        solid = ", ".join(name for name in _SLS if values[name] is not None)
-        if material is not None and solid:
+        given = ", ".join(name for name in _SLS if values[name] is not None)
+        if material is not None and given:
             raise described_error(
-                solid, "given beside material", "left out, or material left out instead"
+                given, "given beside material", "left out, or material left out instead"
             )
         if material is None and missing:
             sentence = (
@@ -296,7 +299,7 @@ class Cylinder(Methods):
             called = "load" if name == "pressed" else name
             array = check_array(called, values[name], unit=SI, above=low, high=high)
             values[name] = read_only(array)
-        broadcast_shape(**self.numbers)
+        broadcast_shape(**self.numbers)  # refuses shapes that do not broadcast
         check_choice("plane", plane, "strain", "stress")
         if material is None:
             if np.ndim(self.T_epsilon) > 1:
@@ -395,8 +398,8 @@ class Cylinder(Methods):
         Returns
         -------
         Cylinder
-            A new one, whose ``load`` counts as given.  The force along the slope, P sin(slope), is
-            not in it.
+            A new one, whose ``load`` is fixed at this value: :meth:`replace` with another m or g
+            does not compute it anew.  The force along the slope, P sin(slope), is not in it.
 
         Raises
         ------
@@ -412,7 +415,7 @@ class Cylinder(Methods):
         True
         """
         cosine = slope_tan_cos(slope)[1]
-        broadcast_shape(slope=cosine, **self.numbers)
+        broadcast_shape(slope=cosine, **self.numbers)  # refuses shapes that do not broadcast
         return self.replace(load=self.load * cosine)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:

@@ -239,7 +239,7 @@ def _feistel(index: Words, half: int, key: Words) -> Words:
     """Return the images of numbers under a permutation of all numbers of 2 * half bits.
 
     In each round the right half and a key are mixed and added, bit by bit without carry, to the
-    left half, and the halves change places; this can be inverted for any mixing.
+    left half, and the halves are exchanged; this can be inverted for any mixing.
 
     index: the numbers, (k,), uint64, < 2^(2 half); not changed.
     half: bits of half a number, 1 to 32.

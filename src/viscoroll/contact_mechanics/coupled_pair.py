@@ -55,7 +55,7 @@ def _fit() -> tuple[Floats, Floats]:
 
     Returns (|x| of the nodes of all bins of ln|x|, ascending in each, (BINS (DEGREE + 1),); matrix
     that makes of the values at the nodes of a bin the coefficients of powers of t, where t in [-1,
-    1] is the place of ln|x| in the bin).
+    1] is the position of ln|x| in the bin).
     """
     nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
     logs = LOWEST + WIDTH * (np.arange(BINS)[:, None] + 0.5 * (1.0 + nodes))

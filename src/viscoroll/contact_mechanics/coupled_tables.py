@@ -4,7 +4,8 @@ A table has a row of states at each of several speeds, at nodes of creep between
 cubic.  Speeds run from a thousandth of the slowest rate of the bodies to ten times the fastest, in
 equal steps of ln u, with the elastic limits at both ends; creeps from one onset of full slip over
 the creep at which slip of the other sign opens to the other onset, in equal steps of the graded
-place t (:mod:`.coupled_splines`).
+coordinate t (:mod:`.coupled_splines`): -1 at the negative onset of full slip, 0 at that middle
+creep, 1 at the positive onset.
 
 Tables are made at first use, and their files are kept beside the compiled kernels.  A table depends
 on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load and radius change
@@ -156,14 +157,14 @@ def _without_outliers(edges: Floats) -> Floats:
     from scipy import ndimage, signal
 
     middle, low, high = edges.T
-    place = (middle - low) / (high - low)  # 0 and 1 at the onsets
-    rows = np.arange(place.size)
+    position = (middle - low) / (high - low)  # 0 and 1 at the onsets
+    rows = np.arange(position.size)
     for neighbours, far in _OUTLIERS:
-        good = np.abs(place - ndimage.median_filter(place, neighbours, mode="nearest")) <= far
-        place = np.interp(rows, rows[good], place[good])
-    if place.size >= _SMOOTHED:
-        place = signal.savgol_filter(place, _SMOOTHED, 2)
-    return low + (high - low) * place
+        good = np.abs(position - ndimage.median_filter(position, neighbours, mode="nearest")) <= far
+        position = np.interp(rows, rows[good], position[good])
+    if position.size >= _SMOOTHED:
+        position = signal.savgol_filter(position, _SMOOTHED, 2)
+    return low + (high - low) * position
 
 
 def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], Floats]:
@@ -179,8 +180,8 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
     """
     low, high = row.onsets()
     fields = _row_fields(row, middle, t)
-    place = _free_place(t, fields[:, 0])
-    free = middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
+    free_t = _free_rolling_t(t, fields[:, 0])
+    free = middle + ((low if free_t < 0.0 else high) - middle) * float(grade(free_t))
     if not 0.0 < row.u < math.inf:
         state = _fields(row, [free])[0]
         # kappa (Q delta - W_base - W_cylinder), from 2 kappa delta and works times 2 kappa
@@ -190,15 +191,15 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
             # mu P, are larger than all loads of a slow motion, which they would drive
             middle = free
             fields = _row_fields(row, middle, t)
-            rest = t.size // 2
-            fields[rest, 0] = 0.0
-            shift = -fields[rest, 1:3]
+            node = t.size // 2  # that of the middle creepage
+            fields[node, 0] = 0.0
+            shift = -fields[node, 1:3]
         else:
             # elastic bodies lose energy in slip alone: else the error of the spline would drive a
             # cylinder at rest, or keep it at rest; bodies that deform share the shift
             sides = {body.side for body in row.pair}
             deforms = np.array([side in sides for side in ("base", "cylinder")])
-            found = _spline(t, fields[:, 1:3] @ deforms, place)(place)
+            found = _spline(t, fields[:, 1:3] @ deforms, free_t)(free_t)
             shift = np.where(deforms, (friction - found) / deforms.sum(), 0.0)
         # M_b + W_b, what the body loses, stays: kappa M_b in columns 1 and 2, 2 kappa W_b in 6 and
         # 7
@@ -228,30 +229,35 @@ def _fields(row: CoupledRow, creeps: Any, at: Any = None) -> Floats:
     return np.stack(states[: len(FIELDS)], axis=-1)
 
 
-def _spline(t: Floats, values: Floats, place: float) -> Any:
+def _spline(t: Floats, values: Floats, side: float) -> Any:
     """Return the cubic spline of one row on one side of its middle, with slopes 0 at both ends.
 
-    t, values: all nodes of the row, in [-1, 1], and the values there, (m,) each.
-    place: number whose sign selects the side: t <= 0 if it is negative, else t >= 0.
+    t, values: nodes of the row, as in :func:`_free_rolling_t`, and the values there, (m,) each.
+    side: number whose sign selects the side: t <= 0 if it is negative, else t >= 0.
     Returns a function of t in that side, in the unit of ``values``.
     """
     from scipy import interpolate
 
     half = t.size // 2
-    side = slice(0, half + 1) if place < 0.0 else slice(half, None)
-    return interpolate.CubicSpline(t[side], values[side], bc_type="clamped")
+    nodes = slice(0, half + 1) if side < 0.0 else slice(half, None)
+    return interpolate.CubicSpline(t[nodes], values[nodes], bc_type="clamped")
 
 
-def _free_place(t: Floats, Q: Floats) -> float:
+def _free_rolling_t(t: Floats, Q: Floats) -> float:
     """Return the t of free rolling, at which the spline of one row has Q = 0.
 
-    t, Q: all nodes of the row, in [-1, 1], and Q/mu there, (m,) each.
+    t: nodes of the row in the graded coordinate t of the creepage (-1: negative onset of full slip,
+        0: middle creepage, 1: positive onset; :func:`.law_rows.grade`), ascending, (m,).
+    Q: Q/mu at the nodes, (m,), dimensionless; it rises from about -1 to about 1.
+    Returns t in (-1, 1), dimensionless.
+    Raises ValueError of scipy if Q has no zero on the side of the middle that is searched, as its
+    values at both ends of that side have one sign.
     """
     from scipy import optimize
 
     # Q rises with t: its zero lies below the middle if Q is positive there
-    sign = -1.0 if Q[t.size // 2] > 0.0 else 1.0
-    return float(optimize.brentq(_spline(t, Q, sign), *sorted((0.0, sign)), xtol=1e-15))
+    side = -1.0 if Q[t.size // 2] > 0.0 else 1.0
+    return float(optimize.brentq(_spline(t, Q, side), *sorted((0.0, side)), xtol=1e-15))
 
 
 def measure_errors(

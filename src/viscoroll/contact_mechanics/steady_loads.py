@@ -104,9 +104,11 @@ class Loads(NamedTuple):
         """Return force and torque at given speeds, in the frame of the motion.
 
         load : index of the load of each speed, a number or (m,).
-        V, omega : speeds, dimensionless, (m,); omega may be left out where it has no gain.
-        sign : -1.0 where a motion towards -x is given as its mirror image, under values at rest of
-            the other sign, else 1.0; a number or (m,).
+        V, omega : speeds, dimensionless, (m,); omega may be left out, which means 0, where no gain
+            acts on it.
+        sign : -1.0 for a motion towards -x that is computed as its mirror image (V > 0): then the
+            values of force and torque at V = omega = 0 change sign, the gains do not.  1.0
+            (default): no mirror image.  A number or (m,).
         Returns (force, torque), divided by P and P R, (m,) each.
         """
         gains = self.gains

@@ -148,8 +148,11 @@ class _ScanProblem(NamedTuple):
             )
         elif law.cover is not None:
             shear = shear_at(self.contacts, free.V)
-            rest = free.moments - [force, torque]
-            Q = shear.traction(of_torque * rest[0] - of_force * rest[1], of_torque, of_force)
+            # r_f and -r_q, the right sides of the balances (:meth:`.steady_loads.Shear.traction`)
+            axis_side, minus_spin_side = free.moments - [force, torque]
+            Q = shear.traction(
+                of_torque * axis_side - of_force * minus_spin_side, of_torque, of_force
+            )
             half_space, cylinder = free.moments + shear.moments(Q)
         else:
             return (free.moments.sum(axis=0) - (force + torque)) / (of_force + of_torque)
@@ -314,7 +317,8 @@ def _scan_slip(problem: _ScanProblem) -> Floats:
     for x in np.log2(u[sign > 0.0]):
         free = problem.free_rolling(np.array([x]))
         limit = free.slips[2, 0]
-        rest = free.moments[0] - problem.loads_at(free.V, free.V)[0]  # Q + gain slip
+        # right side of the balance of the axis: Q + gain slip, with the gain of the force on omega
+        right_side = free.moments[0] - problem.loads_at(free.V, free.V)[0]
 
         # defaults keep x and limit of this turn
         def residual(part: Floats, x: float = x, limit: float = limit) -> Floats:
@@ -322,7 +326,7 @@ def _scan_slip(problem: _ScanProblem) -> Floats:
 
         sides = np.array([1.0, -1.0])
         # the slip at which Q = +-mu balances the axis; it is full slip if beyond the limit
-        full = (rest - sides * mu) / problem.load_rows[0, 2]
+        full = (right_side - sides * mu) / problem.load_rows[0, 2]
         partial_slip = limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
         slip = np.concatenate([partial_slip, full[sides * full > limit]])
         found.append(np.array([np.full_like(slip, x), slip]))
@@ -376,8 +380,8 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     size = problem.contacts.mu + np.abs(rows[Field.M_HALF_SPACE]) + np.abs(rows[Field.M_CYLINDER])
     rows = rows[:, np.abs(residuals).max(axis=0) <= _RESIDUAL * size]
     rows = rows[:, np.lexsort(rows[[Field.DELTA, Field.V]])]
-    place = rows[[Field.V, Field.DELTA]]
-    same = np.abs(np.diff(place)) <= _SAME_STATE * np.abs(place[:, 1:])
+    points = rows[[Field.V, Field.DELTA]]
+    same = np.abs(np.diff(points)) <= _SAME_STATE * np.abs(points[:, 1:])
     return np.delete(rows, 1 + np.flatnonzero(same.all(axis=0)), axis=1)
 
 

@@ -153,10 +153,10 @@ class States(NamedTuple):
         on_spin = loads.given != "force"
         required = loads.torque[load] if on_spin else -loads.force[load]
         if law.coupled is not None:
-            creep, rest = balance(contacts, still, required, on_spin)
+            creep, unbalanced = balance(contacts, still, required, on_spin)
             creeps = [creep]
             rows = state_rows(contacts, still, creep)
-            exists = rest == 0.0
+            exists = unbalanced == 0.0
         else:
             star, free = contacts.fields(still, 0.0, "delta_star", "delta_0")
             shear = shear_at(contacts, still)
@@ -351,11 +351,11 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     force, torque = loads.at_speed(load, V, sign=sign)
     on_spin = loads.given == "torque"
     if law.coupled is not None:
-        delta, rest = balance(contacts, V, torque if on_spin else -force, on_spin)
+        delta, unbalanced = balance(contacts, V, torque if on_spin else -force, on_spin)
         rows = state_rows(contacts, V, delta)
         losses = moments_of_losses(contacts, V, delta)
-        rows[Field.DELTA, rest != 0.0] = np.nan
-        rows[Field.Q] += rest
+        rows[Field.DELTA, unbalanced != 0.0] = np.nan
+        rows[Field.Q] += unbalanced  # Q as the balance needs it
         return States.of(loads, load, sign, rows, free=losses)
     delta_0 = contacts.free_creep(V)
     *free, star, lam, rise = contacts.fields(

@@ -114,8 +114,8 @@ def evaluate_coupled(
         which = row_of_state.ravel() == n
         row = _coupled_row(pair, *rows[:, n].tolist())
         fields = _fields_of_row(row, states[:, which], computed)
-        for place, name in zip(out, computed):
-            place[which] = fields[name]
+        for values, name in zip(out, computed):
+            values[which] = fields[name]
 
     run_blocks(work, rows.shape[1], 1)
     return complete(names, computed, out, shape)
@@ -232,13 +232,13 @@ def coupled_stress(
     out = np.empty((2, *shape))
     for n, (u, mu, kappa, _, sign, *_, reduced) in enumerate(states.T.tolist()):
         found = _coupled_row(pair, u, mu).profile(reduced)
-        place = number == n
+        of_state = number == n  # mask of the points of the n-th state
         # from the middle of the contact, of a motion along +x; for V < 0 all is mirrored
-        y = sign * x[place] - found.shift
+        y = sign * x[of_state] - found.shift
         # tractions are over E'/(4 pi kappa)
         both = [np.interp(y, found.nodes, each) for each in (found.p, found.q)]
-        out[:, place] = np.array(both) / (4.0 * np.pi * kappa)
-        out[1, place] *= sign
+        out[:, of_state] = np.array(both) / (4.0 * np.pi * kappa)
+        out[1, of_state] *= sign
     return out
 
 
@@ -357,10 +357,10 @@ def stress(
     stresses = find(scene, position, speed, creep, delta is None)
     stresses *= scale["p"]  # in place: a copy would double the memory of a large call
     found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
-    place = "place along the contact, from the point below the axis" + ", divided by l0" * (
+    long_name = "place along the contact, from the point below the axis" + ", divided by l0" * (
         not scale.si
     )
-    own = {"x": {"long_name": place, "equation": "Eq. (11)"}}
+    own = {"x": {"long_name": long_name, "equation": "Eq. (11)"}}
     return Values(found, given, own, "Stresses", si=scale.si, labels=labels)
 
 
@@ -449,9 +449,9 @@ def _cover_pressure(cover: Cover, points: Any) -> Floats:
     states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
     found = np.empty(x.size)
     for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
-        place = which.ravel() == n
+        of_state = which.ravel() == n  # mask of the points of the n-th state
         # from the middle, in half lengths; 2 P/(pi a) over E' is 1/(8 pi kappa lam), as a = lam
         # l0/2 and l0^2 = 32 P R/E'
-        y = 2.0 * x[place] / lam - epsilon
-        found[place] = pressure(modes, zeta, 0.5 * lam, y) / (8.0 * np.pi * kappa * lam)
+        y = 2.0 * x[of_state] / lam - epsilon
+        found[of_state] = pressure(modes, zeta, 0.5 * lam, y) / (8.0 * np.pi * kappa * lam)
     return found

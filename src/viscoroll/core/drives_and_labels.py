@@ -359,8 +359,8 @@ class Labels(NamedTuple):
 
         shape: shape of the array: axes in front, then those of the arguments, then ``after`` more.
         after: number of its axes after those of the arguments, >= 0.
-        Returns their number, >= 0; -1 if the sizes of the axes at that place are not those of the
-        arguments.
+        Returns their number, >= 0; -1 if the sizes of the axes at that position are not those of
+        the arguments.
         """
         front = len(shape) - len(self.shape) - after
         return front if front >= 0 and shape[front : len(shape) - after] == self.shape else -1
@@ -495,12 +495,12 @@ def strip_labels(given: Named, units: HasUnits) -> tuple[Named, Labels | None]:
     ):
         return given, None
     given = {name: convert_argument(name, value, units) for name, value in given.items()}
-    arrays, series = (
+    data_arrays, series = (
         {name: value for name, value in given.items() if isinstance(value, kind)}
         for kind in (_loaded_type("xarray", "DataArray"), _loaded_type("pandas", "Series"))
     )
-    labelled = arrays | series
-    # [()] makes a number of numpy of an array without axes
+    labelled = data_arrays | series
+    # other kinds, as an index or a nested list, become float64; [()] makes a number of shape ()
     given |= {
         name: check_array(name, value)[()]
         for name, value in given.items()
@@ -513,17 +513,17 @@ def strip_labels(given: Named, units: HasUnits) -> tuple[Named, Labels | None]:
     }
     if not labelled:
         return given, None
-    plain = [
+    unlabelled = [
         name
         for name, value in given.items()
         if name not in labelled and not isinstance(value, Schedule) and np.ndim(value)
     ]
-    if plain or (arrays and series):
-        mixed = (*labelled, *plain)
+    if unlabelled or (data_arrays and series):
+        mixed = (*labelled, *unlabelled)
         kinds = ", ".join(f"{name} ({type(given[name]).__name__})" for name in mixed)
         sentence = f"{kinds} are mixed: give all as DataArray, as Series, or as arrays of numpy"
         raise ParameterError(", ".join(mixed), "mixed", "alike", sentence)
-    values, labels = _from_xarray(arrays) if arrays else _from_pandas(series)
+    values, labels = _from_xarray(data_arrays) if data_arrays else _from_pandas(series)
     return given | values, labels
 
 
@@ -547,7 +547,7 @@ def _from_xarray(arrays: Named) -> tuple[Named, Labels]:
     import xarray as xr
 
     try:
-        whole = xr.broadcast(*xr.align(*arrays.values(), join="exact"))
+        aligned = xr.broadcast(*xr.align(*arrays.values(), join="exact"))
     except ValueError as error:
         names = " and ".join(arrays)
         raise ParameterError(
@@ -557,9 +557,9 @@ def _from_xarray(arrays: Named) -> tuple[Named, Labels]:
             f"{names} have axes of the same name, but of different coordinates or lengths: give "
             "the same coordinates (xarray.align selects the common ones), or rename an axis",
         ) from error
-    like = whole[0].drop_attrs()
+    like = aligned[0].drop_attrs()
     # from the last array to the first, whose coordinates take the place of later ones
-    others = {name: each for array in reversed(whole) for name, each in array.coords.items()}
+    others = {name: each for array in reversed(aligned) for name, each in array.coords.items()}
     like = like.assign_coords({name: others[name] for name in others if name not in like.coords})
     coords = {
         str(name): (tuple(map(str, each.dims)), each.values)
@@ -567,7 +567,7 @@ def _from_xarray(arrays: Named) -> tuple[Named, Labels]:
         if each.dims
     }
     labels = Labels(like.shape, like, tuple(map(str, like.dims)), coords)
-    return {name: array.values for name, array in zip(arrays, whole)}, labels
+    return {name: array.values for name, array in zip(arrays, aligned)}, labels
 
 
 def _from_pandas(series: Named) -> tuple[Named, Labels]:

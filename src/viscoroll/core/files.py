@@ -292,7 +292,7 @@ def write_dataset(
     *,
     sealed: bool = False,
 ) -> None:
-    """Write a dataset as netCDF-4/HDF5, whole or not at all, by :func:`replace_file`.
+    """Write a dataset as netCDF-4/HDF5 by :func:`replace_file`: the file is complete or unchanged.
 
     Texts of attributes have a fixed length (:func:`fix_texts`).
 

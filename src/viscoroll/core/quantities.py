@@ -173,7 +173,7 @@ class Symbol(NamedTuple):
     latex : symbol, "" of a quantity without one, whose range and equation are "" too.
     long_name : meaning.
     range : allowed values.
-    equation : its place in the paper, "" without one.
+    equation : the equation or section of the paper that has it, "" without one.
     """
 
     latex: str
@@ -379,9 +379,9 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a
         duration, an array of xarray, a series or an index of pandas.
     Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a
-    text, of pint in full, as "meter / second").  Without a unit that is (``value``, None), of
-    whatever type the value is; of lists with elements other than float and int, and of arrays of
-    objects it is a new one.  Durations are numbers in "s".
+    text, of pint in full, as "meter / second").  If there is no unit: (``value`` itself, None),
+    except that lists with elements other than float and int and arrays of objects are new ones.
+    Durations are numbers in "s".
     Raises ParameterError for a table of pandas, or a row of one; a list with truth values, or of
     numbers with and without units; a duration in months, years or without a unit; units of
     different dimensions in one list, or between the elements and the stated unit of an array of
@@ -399,17 +399,19 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
         return numbers.reshape(value.shape), unit
     if _is_quantity(value):
         unit = value.units
-        # The full name of the unit does not depend on the default format of its registry.
+        # "D" is the format of pint for full names, whatever the default format of the registry is
         return value.magnitude, format(unit, "D") if hasattr(unit, "dimensionality") else str(unit)
-    if hasattr(value, "columns"):
+    if hasattr(value, "columns"):  # DataFrame of pandas
         raise described_error(name, "is a table", "one column of it")
+    # DataArray of xarray; Series or Index of pandas
     if hasattr(value, "dtype") and (hasattr(value, "attrs") or hasattr(value, "to_numpy")):
         return _split_labelled(name, value)
     if (duration := _to_seconds(name, value)) is not None:
         return duration, "s"
     unit = getattr(value, "unit", getattr(value, "units", None))  # of astropy and unyt
     if unit is not None and isinstance(value, np.ndarray | np.generic):
-        return np.array(value, subok=False), str(unit)  # the class of the library has units
+        # a plain array: the array type of the library would keep the unit
+        return np.array(value, subok=False), str(unit)
     return value, None
 
 

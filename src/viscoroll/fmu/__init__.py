@@ -564,12 +564,12 @@ def _stubs(source: str, header: str, version: int) -> str:
 def _compile(compiler: str, source: Path, library: Path) -> None:
     """Compile fmu.c to a shared library.
 
-    compiler: path of cc.
+    compiler: path of the C compiler.
     source: path of fmu.c, beside the headers.
     library: file to write.
-    Returns nothing; the library is written, linked with the mathematical library.
-    Raises FileError, with the first 200 characters of the compiler's message, if the compiler ends
-    with another code than 0.
+    Returns nothing; the library is written, linked with libm (mathematical functions).
+    Raises FileError, with the first 200 characters of the compiler's message, if the compiler exits
+    with a nonzero code.
     """
     result = subprocess.run(
         [compiler, *_FLAGS, str(source), "-lm", "-o", str(library)],

@@ -188,8 +188,7 @@ HOTTEST = 500.0
 
 
 class Temperatures(Equilibria):
-    """Equilibria of heat of a roller, the result of :func:`viscoroll.temperature`, in SI units per
-    m of its length.
+    """Equilibria of heat, the result of :func:`viscoroll.temperature`, in SI units per m of length.
 
     The last axis counts the equilibria of a state by rising temperature; shorter lists are padded
     with NaN (``stable``: False).  The axes before it are those of the states, none of one state.
@@ -256,9 +255,10 @@ class Temperatures(Equilibria):
         Returns
         -------
         xarray.Dataset
-            Over the axes of the states (of one state none; named as in labelled arguments, else
-            ``state``) and ``equilibrium``: the fields of this result, ``stable`` and ``measured``
-            as 0 or 1; ``count`` over the axes of the states alone.  ``reason`` is left out.
+            Its last axis is ``equilibrium``; the axes before it are those of the states, of which
+            one state has none.  They are named as in :meth:`viscoroll.Steady.to_xarray`.  Variables
+            are the fields of this result, ``stable`` and ``measured`` as 0 or 1, and ``count``,
+            over the axes of the states alone.  ``reason`` is left out.
 
         Examples
         --------

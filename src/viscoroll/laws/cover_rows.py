@@ -55,7 +55,7 @@ from .cover_solve import (
     solve,
     term_count,
 )
-from .law_rows import PER_OCTAVE, SHORT_TERMS, Rows, fit_end, interpolate_octaves, row_range
+from .law_rows import PER_OCTAVE, SHORT_TERMS, Rows, e0_and_row_count, fit_end, interpolate_octaves
 from .row_layout import CoverRows, constant_rows, steady_table
 
 # --- What shear does in the contact of a cover, to first order ---
@@ -300,7 +300,7 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
         slow_limit[_MOMENTS] = modes.shares * float(modes.series.e @ modes.series.e)
     # the contact is longest at rest: all nodes have the number of terms that it needs
     orders = max(LEAST_TERMS, term_count(0.5 * slow_limit[_LAM] / thickness))
-    e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
+    e0 = int(e0_and_row_count(modes.series.b[0], modes.series.a[-1])[0])
     widest = max(cover.thickness, cover.other_thickness or 0.0)
     widest *= 1.0 if thickest is None else thickest / cover.thickness
     # rolling is fast where even the shortest time is long beside the transit of l0, or of a length

@@ -243,7 +243,7 @@ def load_grid(path: str | os.PathLike[str], alpha: float | None = None) -> LawGr
             found = f"{name} = {describe_value(variable.values)}: must be two or more numbers"
             raise _no_law(path, f"{found}, each larger than the one before")
     with _told_of(path, table):
-        table = _in_si(table)
+        table = _with_known_units(table)
         check_nodes(table, path)
     table = _at_alpha(table, path, alpha)
     with _told_of(path, table):
@@ -280,8 +280,7 @@ def _told_of(path: Any, table: Dataset) -> Iterator[None]:
 
 
 def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> None:
-    """Raise FileError for the first bad node of a variable, with its value and its place; do
-    nothing if no node is bad.
+    """Raise FileError for the first bad node of a variable, if any, with its value and index.
 
     variable: variable of a grid.
     bad: truth values of its shape.
@@ -290,11 +289,11 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
     """
     if bad.any():
         first = np.argwhere(bad)[0]
-        place = ", ".join(f"{n} of {dim}" for dim, n in zip(variable.dims, first))
+        index = ", ".join(f"{n} of {dim}" for dim, n in zip(variable.dims, first))
         found = describe_value(variable.values[tuple(first)].item())
         unit = str(variable.attrs.get("units", "1"))
         found += f" {unit}" * (unit != "1")
-        where = f"{variable.name} = {found} at index {place or '0'}"
+        where = f"{variable.name} = {found} at index {index or '0'}"
         raise _no_law(path, f"{where}: must be {allowed}")
 
 
@@ -339,7 +338,7 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
 
 
 def check_nodes(table: Dataset, path: Any) -> None:
-    """Raise FileError for a node of a grid whose field no contact has, with its value and place.
+    """Raise FileError for a node of a grid whose field no contact has, with its value and index.
 
     All conditions are checked to the digits of a file, 1e-5 of the largest value:
 
@@ -423,7 +422,7 @@ def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
     return table.assign_coords(alpha=np.log(nodes)).interp(alpha=wanted, method=method)
 
 
-def _in_si(table: Dataset) -> Dataset:
+def _with_known_units(table: Dataset) -> Dataset:
     """Return a grid in SI units if its V has a unit, else without dimension.
 
     table: dataset of a grid; V, delta, Q, M, M_half_space and M_cylinder, where present, must have
@@ -438,7 +437,7 @@ def _in_si(table: Dataset) -> Dataset:
         unit = str(table[name].attrs.get("units", "missing"))
         wanted = "1" if dimensionless else UNITS[name]
         try:
-            by = conversion_factor(unit, wanted)[0]
+            factor, _ = conversion_factor(unit, wanted)
         except ParameterError as error:
             allowed = "1" if wanted == "1" else f"{wanted} or a multiple of it"
             if name == "V":
@@ -446,12 +445,13 @@ def _in_si(table: Dataset) -> Dataset:
             elif dimensionless:
                 allowed += ", as the unit of V is 1"
             raise ParameterError(f"attribute units of {name}", unit, allowed) from error
-        table = table.assign({name: (table[name].astype(float) * by).assign_attrs(units=wanted)})
+        values = table[name].astype(float) * factor
+        table = table.assign({name: values.assign_attrs(units=wanted)})
     if dimensionless:
         return table.assign_attrs(R=1.0, load=1.0, scale=DIMENSIONLESS)
-    # the load is needed only to make a limit of mu
-    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
-        if name not in table.attrs:
+    # the load is needed only for the friction limit, mu times load
+    for name, unit in (("R", "m"), ("load", "N/m")):
+        if name not in table.attrs and (name == "R" or "mu" in table.attrs):
             raise described_error(
                 f"global attribute {name}", "is missing", f"given, in {unit}, as V has a unit"
             )

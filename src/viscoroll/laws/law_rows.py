@@ -174,9 +174,11 @@ class Rows:
         return powers
 
 
-def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
-    """Return the range of the rows of a law, beyond whose last row its fast limit is accurate to
-    rounding.
+def e0_and_row_count(slowest: Any, fastest: Any) -> tuple[Any, Any]:
+    """Return where the rows of a law begin and how many there are, so that beyond the last one the
+    fast limit is accurate to rounding.
+
+    They are rows of u = kappa |V|, and of v = 1/F(eta) too.
 
     slowest: slowest rate of creep b_1, > 0, in units of 1/T_ref; a number or an array.
     fastest: fastest rate of relaxation a_N, > 0, in units of 1/T_ref, in the same shape.
@@ -416,13 +418,14 @@ class CoupledRows:
 
     mu : coefficient of friction.
     u : nodes of kappa |V|, (n,), > 0, ascending.
-    t : nodes of the place in creep, (m,), from -1 to 1, with 0 among them where ``graded``.
+    t : nodes of the coordinate t of the creepage, (m,): -1 at the negative onset of full slip, 0 in
+    the middle, which is a node where ``graded``, 1 at the positive onset.
     edges : 2 kappa times the creepages that divide the states of a speed: the middle, both onsets
         of full slip and free rolling, (n + 2, 4): first for u = 0, last for u infinite.
     fields : :data:`FIELDS`, (n + 2, m, 8): M times kappa; work is 2 kappa times that of shear on
     the strain of a body.
-    graded : whether t is graded at 0 and +-1; else it is the place itself, and the splines are not
-    clamped there.
+    graded : whether the creepage at t lies at the part w = grade(t) of the distance from the middle
+    to the onset on its side, and splines over t are clamped at 0 and +-1; else w = |t|.
     fastest : largest u that is allowed; 1e300 where the last row is the limit of u infinite.
     slips : whether the contact slips fully beyond the onsets; False: nothing is known there.
     limit : largest abs(Q/mu): 1, or infinite where it is not known.
@@ -509,7 +512,7 @@ class CoupledRows:
         It is mu (Q/mu) times the reduced creepage, less the work of shear on the strains.
         """
         middle, low, high = (edge[:, None] for edge in self.edges[:, :3].T)
-        # the creepage at t: from the middle to the onset of its side, by the part w(t) of the way
+        # the creepage at t: the middle plus w(t) times the distance to the onset on its side
         creep = middle + np.where(self.t < 0.0, low - middle, high - middle) * grade(self.t)
         # work_half_space and work_cylinder of FIELDS
         work = self.fields[..., 6] + self.fields[..., 7]
@@ -539,7 +542,9 @@ class CoupledRows:
 
 
 def grade(t: Any) -> Any:
-    """Return w = 1 - (1 - t^2)^(3/2), the place at t of a graded table."""
+    """Return w = 1 - (1 - t^2)^(3/2), the part of the distance from the middle creepage to an onset
+    of full slip at which the creepage at t lies in a graded table.
+    """
     return 1.0 - (1.0 - np.square(t)) ** 1.5
 
 

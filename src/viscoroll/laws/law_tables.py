@@ -27,7 +27,7 @@ from ..core import Floats, ParameterError, check_number, described_error
 from ..kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
 from ..materials import HIGHEST_ALPHA, Bodies, Cover, Pair, Prony, lock_array, total_series
 from .cover_rows import cover_rows
-from .law_rows import CoupledRows, Rows, evaluate_by_modes, refuse_distant_times, row_range
+from .law_rows import CoupledRows, Rows, e0_and_row_count, evaluate_by_modes, refuse_distant_times
 from .row_layout import (
     FUNCTIONS,
     N_COLUMN,
@@ -363,7 +363,7 @@ def make_table(
         T_mean = float(cover.coefficients[0, 0, 2:4].sum())
     elif modes.a.size:
         refuse_distant_times(modes.b[0], modes.a[-1])
-        e0, count = map(int, row_range(modes.b[0], modes.a[-1]))
+        e0, count = map(int, e0_and_row_count(modes.b[0], modes.a[-1]))
         if coefficients is None:
             coefficients = fit_rows(material, Rows(e0, count), total.alpha, sums[1:, 2])
     else:  # elastic bodies: lam = eta/F = H/F^2 = 1, and neither shift nor moment

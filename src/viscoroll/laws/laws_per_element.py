@@ -253,10 +253,10 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
     from ..kernels.law.law_record import E0, ROW_COUNT
 
     # octaves [2^n, 2^(n + 1)) that contain the thicknesses
-    place = np.log2(covers.thickness)
-    octave = np.floor(place)
+    log_thickness = np.log2(covers.thickness)
+    octave = np.floor(log_thickness)
     many_nu = np.ndim(covers.nu) > 0
-    weights = _node_weights(place - octave, _THICKNESS_NODES)
+    weights = _node_weights(log_thickness - octave, _THICKNESS_NODES)
     laws = {}
     if many_nu:
         of_nu = _node_weights(np.log(3.0 - 4.0 * covers.nu) / math.log(3.0), _NU_NODES)
@@ -304,8 +304,8 @@ def _node_weights(x: Floats, count: int) -> Floats:
     """Return the weights of values at Chebyshev nodes in the polynomial through them, whose value
     is then a weighted sum.
 
-    x: points, in [0, 1], (points,): the place of a cover in its octave of thickness, or in the
-        range of nu.
+    x: points, in [0, 1], (points,): the position of a cover in its octave of thickness, or in
+        the range of nu.
     count: number of nodes, the Chebyshev points of [0, 1].
     Returns the weights, of either sign, (points, nodes); their sum over the nodes is 1.
     """

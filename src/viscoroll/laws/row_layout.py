@@ -19,7 +19,7 @@ dimensionless: times are divided by T_ref, the unit of time of the material.
 - Fast limit: the expansion of the functions for large u or v, which replaces the rows beyond the
   last one.  Its coefficients are W = sum J_j/T_j and C = sum J_j/T_j (ln(2 T_j) - 0.5772...), each
   of both bodies together, of the half-space and of the cylinder.
-- s: place of alpha in its octave [2^n, 2^(n+1)), s = 2 log2(alpha/2^n) - 1, in [-1, 1].
+- s: position of alpha in its octave [2^n, 2^(n+1)), s = 2 log2(alpha/2^n) - 1, in [-1, 1].
 """
 
 import math
@@ -30,7 +30,7 @@ import numpy as np
 from ..core import Floats, Integers
 from ..kernels.numerics.interpolation import powers_of_chebyshev, to_chebyshev
 from ..materials import AXIS, COVER, KINDS, LAW, Block, lock_array
-from .law_rows import SHORT_TERMS, TERMS, Rows, modes_record, refuse_distant_times, row_range
+from .law_rows import SHORT_TERMS, TERMS, Rows, e0_and_row_count, modes_record, refuse_distant_times
 
 #: functions of a table in their order, lam, epsilon, m_half_space, m_cylinder, N, share and press:
 #: the first five depend on u = kappa |V|, the others on v = 1/F(eta)
@@ -172,18 +172,19 @@ def _interleave(functions: Floats, paired: int) -> Floats:
 
 
 def align_vector(numbers: Floats) -> Floats:
-    """Return a copy of a vector that begins at a line of the cache, 64 bytes.
+    """Return a copy of a vector that begins where a cache line (64 bytes) begins.
 
-    Elsewhere every vector of eight numbers that a kernel loads, and up to half of those of four,
-    would span two lines.
+    Otherwise each group of eight numbers that a kernel loads at once, and up to half of the groups
+    of four, would straddle two cache lines.
     numbers: doubles, (n,).
     Returns the copy, (n,), writable: a view into a longer array.
     """
-    room = np.empty(numbers.size + 8)
-    # doubles from the start of the array to the next multiple of 64 bytes
-    first = -room.ctypes.data // 8 % 8
-    room[first : first + numbers.size] = numbers
-    return room[first : first + numbers.size]
+    buffer = np.empty(numbers.size + 8)
+    # number of doubles, 0 to 7, from the address of the buffer, a multiple of 8 bytes, to the next
+    # multiple of 64 bytes: (-address/8) modulo 8
+    first = -buffer.ctypes.data // 8 % 8
+    buffer[first : first + numbers.size] = numbers
+    return buffer[first : first + numbers.size]
 
 
 def allocate_rows(count: int) -> tuple[Floats, Integers]:
@@ -309,7 +310,7 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
 
     N is the first-order term of M = M(V) + N(V) V', the rolling moment at slowly changing speed.
 
-    The origin of a row is the place where its argument t is 0: u = 0 in the first row, three
+    The origin of a row is the point where its argument t is 0: u = 0 in the first row, three
     quarters of the end of the octave in the others.  Beyond the last row N is (alpha - 1)/(16 alpha
     u^2), and the origin is infinity.
     table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).  Of a cover
@@ -425,8 +426,8 @@ def pack_axis(tables: list[Any]) -> AxisRows:
     """Interpolate the coefficients of 16 laws over alpha, and pack the result for the kernels of an
     alpha each.
 
-    The interpolation is by Chebyshev polynomials in s in [-1, 1], the place of alpha in its octave;
-    the kernels are those of :mod:`.alpha_axis`.
+    The interpolation is by Chebyshev polynomials in s in [-1, 1], the position of alpha in its
+    octave; the kernels are those of :mod:`.alpha_axis`.
     tables: laws of standard linear solids (:class:`.law_tables.LawTable`) at the 16 Chebyshev nodes
         of s, in the order of :func:`.interpolation.chebyshev`, with equal numbers of rows.
     Returns :class:`AxisRows`: ``numbers``, the terms of these polynomials, in groups of four;
@@ -570,7 +571,7 @@ def pack_materials(block: Block) -> Floats:
     mode_count = np.full(count, modes.a.shape[-1])
     if modes.a.size:
         refuse_distant_times(modes.b.min(), modes.a.max())
-        e0, rows = row_range(modes.b[:, 0], modes.a[:, -1])
+        e0, rows = e0_and_row_count(modes.b[:, 0], modes.a[:, -1])
     *vectors, Q = modes_record(modes, weights)
     front = [modes.alpha, 1.0 / np.sqrt(modes.alpha), *sums, *means, e0, rows, mode_count]
     return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)

@@ -220,8 +220,8 @@ class Bodies(OneOrMany):
         return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations
-        on whole arrays; of n pairs, not of a single one.
+        """Group the pairs by the number of creep modes of their summed compliance, and yield one
+        block of arrays for each number.  Only for n pairs, not for a single one.
 
         Parameters
         ----------
@@ -230,9 +230,9 @@ class Bodies(OneOrMany):
         Yields
         ------
         Block
-            One with weights for each number of modes that occurs, ascending: ``rows``, places in
-            ``which``, ascending, ``modes``, the modes of both bodies together, and ``weights``, the
-            half-space's part of each, (rows, modes).
+            With ascending numbers of modes: ``rows``, positions in ``which``, ascending, ``modes``,
+            those of both bodies together, and ``weights``, fraction of each creep mode that is the
+            half-space's, 0 to 1, (rows, modes).
 
         Raises
         ------
@@ -249,10 +249,11 @@ class Bodies(OneOrMany):
         >>> [block.modes.J.shape for block in pairs.blocks(np.arange(2))]
         [(2, 1)]
         """
-        some = self[which]
-        for block in some.total.blocks(np.arange(len(some))):
+        selected = self[which]
+        for block in selected.total.blocks(np.arange(len(selected))):
+            # weights have the columns of the pair with most modes; those of this block come first
             yield block._replace(
-                weights=some.half_space_weights[block.rows, : block.modes.J.shape[-1]]
+                weights=selected.half_space_weights[block.rows, : block.modes.J.shape[-1]]
             )
 
     def __repr__(self) -> str:
@@ -498,8 +499,7 @@ class Cover(Bodies):
         Returns
         -------
         tuple
-            The :class:`Prony`; Poisson's ratio, dimensionless; the thickness divided by l0, or
-            None.
+            The :class:`Prony`; Poisson's ratio, dimensionless; thickness divided by l0, or None.
 
         Examples
         --------

@@ -4,9 +4,9 @@ The seal is the SHA-256 of all bytes of a file, at its end; it shows damage (:mo
 The checksum of a law is the SHA-256 of its numbers, an attribute of the file; it shows that the
 numbers are those that were written, also after another program converted the file.
 
-The file of a law has variables by its kind (:data:`KINDS`).  The file of a material has both forms
-of its series; it is written and read by ``to_netcdf`` and ``from_netcdf`` of
-:class:`viscoroll.Material`.
+The file of a law has variables by its kind (:data:`KINDS`).  The file of a material has its Prony
+series in relaxation and in creep form; it is written and read by ``to_netcdf`` and
+``from_netcdf`` of :class:`viscoroll.Material`.
 """
 
 import hashlib
@@ -334,7 +334,7 @@ _ERRORS = ("measured_rate", "measured_M_error")
 
 
 def material_as_dataset(material: Any) -> Dataset:
-    """Return both forms of the series, relaxation and creep, and the constants of a material as a
+    """Return the Prony series in relaxation and creep form and the constants of a material as a
     dataset.
 
     material: a :class:`viscoroll.Material`.
@@ -385,10 +385,10 @@ def material_as_dataset(material: Any) -> Dataset:
 
 
 def write_material(material: Any, path: FilePath) -> None:
-    """Write a material as netCDF-4, whole or not at all, sealed by a SHA-256.
+    """Write a material as netCDF-4 with a SHA-256 checksum.
 
     material: a :class:`viscoroll.Material`.
-    path: file to write; a file of that name is replaced.
+    path: file to write; a file of that name is replaced once the new one is complete.
     Raises FileError if it cannot be written there.  Warns with ModelWarning of shifts that the file
     does not hold (:func:`shifts_as_toml`).
     """
@@ -413,8 +413,9 @@ def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
     """Return the shifts of a material that files hold as key -> value in TOML: wlf or arrhenius,
     vertical_shift.
 
-    shift, vertical_shift: as in :class:`.material.Material`; a function is left out, and a shift
-        beside a vertical one that is left out, without which it would give wrong moduli.
+    shift, vertical_shift: as in :class:`.material.Material`.  Left out are a shift other than WLF
+        and Arrhenius, and a function as vertical shift; with it any shift, which would give wrong
+        moduli without the vertical one.
     """
     found = {} if vertical_shift != "entropic" else {"vertical_shift": '"entropic"'}
     if isinstance(shift, WLF | Arrhenius) and not callable(vertical_shift):

@@ -108,7 +108,7 @@ class Material(FromPrograms):
             raise ParameterError(
                 "prony", describe_value(self.prony), "one Prony series, as vr.Prony([2.0], [0.1])"
             )
-        values = vars(self)  # by it, as the class is frozen
+        values = vars(self)  # fields are set through ``__dict__``, as the class is frozen
         if isinstance(self.E, float | np.floating) and self.E == math.inf:
             values["E"] = math.inf
             if self.prony.alpha > 1.0:
@@ -475,8 +475,7 @@ class Material(FromPrograms):
         return (1.0 / self.prony.alpha + (self.prony.J * growth).sum(axis=-1))[()]
 
     def to_xarray(self) -> Dataset:
-        """Return both forms of the series and the constants as a dataset, with names and units, as
-        in files.
+        """Return the Prony series in relaxation and creep form and the constants as a dataset.
 
         Returns
         -------
@@ -535,12 +534,13 @@ class Material(FromPrograms):
         return master_curve(self)
 
     def to_netcdf(self, path: FilePath) -> None:
-        """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed
-        by a SHA-256.  It warns with ModelWarning of a shift that it leaves out: of a function.
+        """Write the material as netCDF-4, with its Prony series in relaxation and in creep form and
+        a SHA-256 checksum.  ModelWarning of what it leaves out: a shift other than WLF and
+        Arrhenius (as ShiftFactors); a function as vertical shift, and any shift beside it.
 
         Parameters
         ----------
-        path : file to write; a file of that name is replaced.
+        path : file to write; a file of that name is replaced once the new one is complete.
 
         Raises
         ------

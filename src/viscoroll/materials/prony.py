@@ -48,7 +48,7 @@ _AGREEMENT = 1e-14
 class Block(NamedTuple):
     """Those of many materials that have the same number of modes.
 
-    rows : places of these materials in the list of indices that was asked for, (materials,).
+    rows : positions of these materials in the list of indices that was given, (materials,).
     modes : :class:`.prony_forms.Modes`, strengths and rates of relaxation and creep, arrays
         (materials, modes).
     weights : for pairs the part of each creep mode that is the half-space's, 0 to 1, (materials,
@@ -312,9 +312,9 @@ class Prony(OneOrMany):
         return self._convert(self._strengths, self._times, self.alpha)
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """Yield materials in blocks of equal numbers of modes, for computations on whole arrays.
+        """Group materials by their number of modes, and yield one block of arrays for each number.
 
-        It is for n materials, not for a single one, which has :attr:`modes`.
+        Only for n materials, not for a single one, which has :attr:`modes`.
 
         Parameters
         ----------
@@ -323,8 +323,8 @@ class Prony(OneOrMany):
         Yields
         ------
         Block
-            One for each number of modes that occurs, ascending, without weights: ``rows``, places
-            in ``which``, ascending, and ``modes``, both forms of the series, (rows, modes).
+            With ascending numbers of modes, without weights: ``rows``, positions in ``which``,
+            ascending, and ``modes``, relaxation and creep form of the series, (rows, modes).
             Elastic materials make a block of 0 modes.
 
         Raises

@@ -186,14 +186,14 @@ def columns_of(
     """
     owners = {}
     for name, heading in named.items():
-        if (place := find_column(table, heading)) is None:
+        if (position := find_column(table, heading)) is None:
             raise ParameterError(
                 f"columns[{name!r}]",
                 f"{heading!r:.60}",
                 f"a heading of the file, one of {', '.join(map(repr, table.headings))}"
                 f"{suggestion(str(heading), table.headings)}",
             )
-        owners[place] = name
+        owners[position] = name
     taken = {_quantity_of_column(name) for name in named}
     columns = []
     others = {}

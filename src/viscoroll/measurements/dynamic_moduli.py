@@ -173,7 +173,7 @@ class KramersKronig(NamedTuple):
     median: float
 
 
-def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str = "") -> _Data:
+def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, where: str = "") -> _Data:
     """Check measured columns and return them as a curve, sorted by frequency or time.
 
     kind : :class:`Curve` or :class:`Relaxation`.
@@ -181,7 +181,7 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str 
         each without a unit or of the dimension in :data:`UNITS`: omega in rad/s, t in s; moduli
         without a unit may be in any, as long as it is the same.
     fewest : least number of points: three, as many as a series of one mode has constants.
-    place : words for the temperature of the curve, "" if it is the only one.
+    where : words for the temperature of the curve, "" if it is the only one.
     Returns the curve, of the class ``kind``, in ascending order; points of one frequency or time
     stay in the order in which they were given.
 
@@ -209,8 +209,8 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = 3, place: str 
     if values[0].size < fewest:
         raise described_error(
             names[0],
-            f"has too few points{place}, {values[0].size}",
-            f"a list of at least {fewest} points{' at each temperature' * bool(place)}",
+            f"has too few points{where}, {values[0].size}",
+            f"a list of at least {fewest} points{' at each temperature' * bool(where)}",
         )
     order = np.argsort(values[0], kind="stable")
     return kind(*(column[order] for column in values))
@@ -457,12 +457,14 @@ class ModuliRecord(Result):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return title and rows of the printed report.
 
-        Returns (title: source, number of points, range of the abscissa, mode and, if the record
-        has them, temperatures, in one line; two :class:`SummaryRow`: the columns with their
-        headings and units, and the notes, or "no unused column" where there are none).
+        Returns (the title, one line: the source, or :attr:`TITLE` of the class without one, number
+        of points, range of the abscissa, mode and, if the record has them, temperatures; two
+        :class:`SummaryRow`: the columns with their headings and units, and the notes, or "no unused
+        column" where there are none).
         """
         name = self.COLUMNS[0]
         x = getattr(self, name)
+        # the last word of AXES[0], the label of the abscissa, is its unit
         words = [
             f"{np.size(x)} point{'s' * (np.size(x) > 1)}",
             f"{name} {np.min(x):.4g} to {np.max(x):.4g} {self.AXES[0].split()[-1]}",
@@ -568,7 +570,7 @@ class DynamicModuli(ModuliRecord):
         return 3
 
     def __getitem__(self, name: Any) -> Any:
-        """Return a field by its name, or omega, storage, loss by their place.
+        """Return a field by its name, or omega, storage, loss by their index.
 
         name : name of a field; 0, 1 or 2, or -3 to -1 from the end; or a slice, which gives a tuple
         of the arrays.

@@ -526,9 +526,9 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
     headings |= _said(table, headings.keys() - section.columns)
     present = {
-        name: place
+        name: index
         for name, heading in headings.items()
-        if (place := find_column(table, heading)) is not None
+        if (index := find_column(table, heading)) is not None
     }
     for name in (*kind.COORDINATES, *section.columns, *section.units):
         if name not in present:

@@ -328,9 +328,9 @@ def master_curve(
         curves = []
         for n, T in enumerate(temperatures):
             part = [column[of_point == n] for column in (x, *moduli)]
-            place = f" at {T:g} °C"
-            curve = data_of(Curve, *part, fewest=2, place=place)
-            curves.append(_LogCurve(thinned(curve), on, place))
+            where = f" at {T:g} °C"
+            curve = data_of(Curve, *part, fewest=2, where=where)
+            curves.append(_LogCurve(thinned(curve), on, where))
         a_T, mismatch, freedom = _shifts_by_overlap(curves, temperatures)
         found = ShiftFactors(temperature=tuple(temperatures), a_T=tuple(a_T), T0=base)
         # relative to the coldest curve so far, now to the reference, which may lie between curves
@@ -443,14 +443,14 @@ class _LogCurve:
     interpolate : the interpolant of y: a function of ln omega, (k,), that returns y there.
     """
 
-    def __init__(self, curve: Curve, on: str, place: str) -> None:
+    def __init__(self, curve: Curve, on: str, where: str) -> None:
         """Take logarithms, average those of repeated frequencies, and make the interpolant.
 
         It is a cubic spline, of two or three different frequencies a monotone one (PCHIP).
 
         curve : :class:`Curve`, storage and loss modulus.
         on : "storage" or "both": the moduli that are kept.
-        place : words for the temperature of the curve, for the error.
+        where : words for the temperature of the curve, for the error.
         Raises ParameterError for a single frequency.
         """
         from scipy import interpolate
@@ -465,7 +465,7 @@ class _LogCurve:
         if self.x.size < 2:
             raise described_error(
                 "omega",
-                f"has only one value{place}",
+                f"has only one value{where}",
                 "two frequencies or more at each temperature",
             )
         kind = interpolate.CubicSpline if self.x.size > 3 else interpolate.PchipInterpolator

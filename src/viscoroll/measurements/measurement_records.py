@@ -62,7 +62,7 @@ class Record:
     labels : :class:`Labels` of xarray or pandas of the arrays that were given; None without.
     """
 
-    #: names of places and of what may be measured there, the first what a plan is about
+    #: names of coordinates, and of what may be measured at them, the first what a plan is about
     COORDINATES: ClassVar[tuple[str, ...]]
     QUANTITIES: ClassVar[tuple[str, ...]]
     LABEL: ClassVar[str]

@@ -47,7 +47,7 @@ from .many_motions import Batch, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
 from .motion_datasets import RollResult, ensemble_dataset
 from .motion_problem import MotionProblem, SolverOptions, make_problem
-from .summaries import LEVELS, drawn_summary, summary_of
+from .summaries import LEVELS, drawn_summary, ensemble_summary
 
 # --- The result of many motions ---
 
@@ -157,10 +157,9 @@ class Ensemble(RollResult):
             (divided by that number), ``_min`` and ``_max`` of these values; ``_quantiles`` over
             (quantile, t), exact; ``_histogram`` over (NAME_bin, t), whose bins run from
             ``NAME_bin_low`` to ``NAME_bin_high``.  Without finite values they are NaN, counts 0.
-            ``ended`` over
-            status: how many motions have each :class:`MotionStatus`.  Attributes: ``motions``,
-            ``failed_motions`` and ``motions_from_the_flow_map``, numbers of motions; Conventions,
-            title, source.
+            ``ended`` over status: how many motions have each :class:`MotionStatus`.  Attributes:
+            ``motions``, ``failed_motions`` and ``motions_from_the_flow_map``, numbers of motions;
+            Conventions, title, source.
 
         Raises
         ------
@@ -178,14 +177,14 @@ class Ensemble(RollResult):
         levels = check_array("quantiles", values, low=0.0, high=1.0)
         if levels.ndim != 1:
             raise ParameterError("quantiles", describe_value(quantiles), "a list of numbers")
-        return summary_of(self, tuple(levels.tolist()))
+        return ensemble_summary(self, tuple(levels.tolist()))
 
     def validity(self) -> Validity:
         """Report which assumptions of the model the motions violate, at the highest speeds of each.
 
         See :func:`viscoroll.validity`.  ``steady`` examines the start speed and all output times of
-        a motion; without V among the fields its highest speed alone, and of a cover it is not
-        decided.
+        a motion, or, without V among the fields, its highest speed alone; ``steady`` is undecided
+        on a cover.
 
         Returns
         -------
@@ -206,7 +205,7 @@ class Ensemble(RollResult):
         if self.V is None or not index.size or roller.scene().cover is not None:
             return report
         speeds = np.vstack([self.V0[index], self.V[index].T])
-        # not before the onset of partial slip; of a motion without onset, NaN, all times count
+        # mask of the times out of full slip; of a motion without onset, NaN, all times are True
         rolls = ~(np.append(0.0, self.t)[:, None] < self.onset_time[index]) & ~np.isnan(speeds)
         x = (
             np.full(speeds.shape, np.nan)

@@ -113,7 +113,7 @@ def dimensionless_error(
     """Return the error, not raised, of a sentence that states dimensionless numbers.
 
     name: name of the parameter.
-    text: the sentence, with a place {} for each number.
+    text: the sentence, with {} for each number.
     quantity: the quantity of these numbers.
     numbers: their values; the first is the one that was found.
     motion: index of the motion of these numbers.

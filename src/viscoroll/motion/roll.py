@@ -76,8 +76,7 @@ class Motion(RollResult):
     brake_loss, slip_loss, rolling_loss : energy lost since t = 0 in brake, slip and rolling,
         likewise.  The works are the change of (V^2 + j omega^2)/2 plus the three losses.
     power_force, power_torque : force V and torque omega, divided by P R/T_ref or in W/m.
-    drive_error : largest difference seen between a callable and the polynomials that fit it,
-        dimensionless.
+    drive_error : largest difference seen of a callable from its fitted polynomials, dimensionless.
     onset_time : time of the first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
     success, status, message : whether the motion reached its last output time or rest; how it
@@ -135,8 +134,8 @@ class Motion(RollResult):
         Returns a :class:`Motion` with one output time, (1,), at which its speeds are finite; at t =
         0 if no step was accepted.
         """
-        outputs = self.t[self.regime >= 0] / self.scale["t"]
-        times = np.union1d(np.append(self._step_ends, 0.0), outputs)
+        reached_times = self.t[self.regime >= 0] / self.scale["t"]
+        times = np.union1d(np.append(self._step_ends, 0.0), reached_times)
         # A last step that is cut at this end may take more steps than one that was not.
         limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
         for reached in times[::-1].tolist():
@@ -200,18 +199,18 @@ class Motion(RollResult):
         # -0: the limit from below
         V = np.where((V == 0.0) & np.signbit(V), -SPEED_RANGE[0] * self.scale["V"], V)
         found = contact(self.roller, V, delta=delta, fields=fields, **options)
-        whole = {}
+        at_all_times = {}
         for name, values in found.as_dict().items():
-            whole[name] = np.full(reached.shape, False if values.dtype == bool else np.nan)
-            whole[name][reached] = values
-        return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
+            at_all_times[name] = np.full(reached.shape, False if values.dtype == bool else np.nan)
+            at_all_times[name][reached] = values
+        return Values(at_all_times, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
 
     def validity(self, capacity: float | None = None) -> Validity:
         """Report which assumptions of the model the motion violates, at the ends of its steps and
         at its output times.
 
         See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its
-        speeds so far; of a cover it is not decided.  States at rest count as the last state before
+        speeds so far, but is undecided on a cover.  States at rest count as the last state before
         them, as the model has nothing to compute at rest.
 
         Parameters
@@ -223,9 +222,10 @@ class Motion(RollResult):
         -------
         Validity
             The report, with arrays over the output times that were reached; empty arrays where none
-            was.  Each entry has the value of the first violation since the output time before (for
-            the first one since t = 0), or, if there is none, that at the output time.  The report
-            is that of the same motion with more output times (``tests/test_steadiness.py``).
+            was.  Each entry has, for the interval since the previous output time (for the first
+            one, since t = 0), the value at its first violation or, if there is none, at its end;
+            ``steady`` instead has the largest value since t = 0.  Which assumptions fail depends
+            little on the output times (``tests/test_steadiness.py``).
 
         Raises
         ------
@@ -239,11 +239,11 @@ class Motion(RollResult):
         >>> motion.validity().steady.holds.shape
         (2,)
         """
-        outputs = self.t[self.regime >= 0]
-        whole = self.at(np.union1d(self.course.t, outputs)) if outputs.size else self
-        reached = whole.regime >= 0
-        V = whole.V[reached]
-        omega = whole.omega[reached]
+        reached_times = self.t[self.regime >= 0]
+        states = self.at(np.union1d(self.course.t, reached_times)) if reached_times.size else self
+        reached = states.regime >= 0
+        V = states.V[reached]
+        omega = states.omega[reached]
         # for each state the index of the last state up to it that moves
         moving = np.maximum.accumulate(np.where((V != 0.0) | (omega != 0.0), np.arange(V.size), 0))
         report = validity(self.roller, V[moving], omega=omega[moving])
@@ -254,19 +254,20 @@ class Motion(RollResult):
                 )
             capacity = check_number("capacity", capacity, unit=self.scale, above=0.0)
             report = report._replace(
-                heat=assess_heat((whole.slip_loss + whole.rolling_loss)[reached], capacity)
+                heat=assess_heat((states.slip_loss + states.rolling_loss)[reached], capacity)
             )
-        if not outputs.size:
+        if not reached_times.size:
             return report
         if self.scene.cover is None:
-            rolls = whole.regime[reached] > 0
+            not_full_slip = states.regime[reached] > 0  # regime 0 is full slip
             report = self._add_steadiness(
-                report, self.roller, V, rolls, whole.x[reached], ends=False
+                report, self.roller, V, not_full_slip, states.x[reached], ends=False
             )
-        # each output time ends a part, whose worst state counts
-        last = np.searchsorted(whole.t[reached], outputs)
+        # each output time ends a part of the states, and an entry gets one value for each part;
+        # entries that no speed decides have one value
+        last = np.searchsorted(states.t[reached], reached_times)
         return Validity(
-            *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
+            *(entry.reduce_parts(last) if np.ndim(entry.holds) else entry for entry in report)
         )
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:

@@ -11,6 +11,11 @@ range to choose beforehand (as in DDSketch: C. Masson, J. Rim, H. Lee, VLDB 2019
 Counts are whole numbers, and moments are kept for each block and merged in the order of blocks.  A
 quantile of blocks lies between two values that are known to 2^-8 each
 (``tests/runs/test_runs.py``); that of an ensemble in memory is exact.
+
+:func:`summarise` counts the motions of a block and returns a :class:`Summary`, which merges with
+those of other blocks; :func:`summary_dataset` makes a dataset of a :class:`Summary`.  By these two
+:func:`ensemble_summary` makes the dataset that ``Ensemble.summary`` returns, and
+:func:`drawn_summary` that from which the figure of an ensemble is drawn.
 """
 
 from collections import Counter
@@ -262,17 +267,22 @@ class Summary(msgspec.Struct):
     mapped: int
 
 
-def summary_of(motions: Any, levels: tuple[float, ...]) -> Dataset:
+def ensemble_summary(motions: Any, levels: tuple[float, ...]) -> Dataset:
     """Return the summary of an ensemble in memory with exact quantiles, see ``Ensemble.summary``.
 
     motions: the :class:`Ensemble`.
     levels: levels of the quantiles, in [0, 1], in any order; the caller checks them (ValueError of
     numpy).
     Raises ParameterError for an ensemble without motions.
-    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the
-    regime, of the distance
-    |x| if it has x, and of onset and rest time, in the units of the roller; its attributes also are
-    ``motions``, their number, and those of :func:`.motion_datasets.provenance`.
+    Returns the dataset of :func:`summary_dataset`, in the units of the roller: moments, quantiles
+    and histograms of
+
+    - every field of the ensemble except ``regime``,
+    - the distance |x|, if x is there,
+    - onset_time and rest_time.
+
+    Its attributes also are ``motions``, their number, and those of
+    :func:`.motion_datasets.provenance`.
     """
     if not len(motions):
         raise ParameterError("motions", 0, "at least 1")
@@ -288,17 +298,16 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> Dataset:
 
 
 def drawn_summary(ensemble: Dataset) -> Dataset:
-    """Return the summary by which an ensemble is drawn: of both speeds, the distance and the angle,
-    as it has them.
+    """Return the summary from which the figure of an ensemble is drawn: of those of V, omega, x and
+    angle that the ensemble has.
 
-    ensemble: dataset of ``Ensemble.to_xarray``.  Those of V, omega, x and angle that it has are
-        summarised, at its t; status and flow are read too; an attribute R tells that it is in SI
-        units.
+    ensemble: dataset of ``Ensemble.to_xarray``; t, status and flow are read too.  An attribute R
+        tells that it is in SI units.
     Returns the dataset of :func:`summary_dataset`, with the quantiles of :data:`LEVELS`, in the
-    units of ``ensemble``, and histograms of the last time alone, of even bins between the least and
-    the largest value;
-    its attributes also are ``motions``, their number.  A dataset without status or flow raises
-    AttributeError.
+    units of ``ensemble``.  Its histograms are of the last time alone, in even bins between the
+    least and the largest value; where these are too near each other, those of the summary stay.
+    Its attributes also are ``motions``, their number.
+    Raises AttributeError for a dataset without status or flow.
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)

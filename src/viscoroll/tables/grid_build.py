@@ -542,7 +542,7 @@ def random_points(table: Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid; along an axis of one node they all have its
     coordinate.
 
-    A cell is drawn with equal probability for each axis, then the place in it evenly in the
+    A cell is drawn with equal probability for each axis, then the position in it evenly in the
     coordinate itself.
 
     table: the grid, dataset of :func:`build`.

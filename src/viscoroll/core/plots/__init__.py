@@ -66,7 +66,7 @@ def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[
     height: height of each row of axes, inches; the figure has 0.8 inches more, for its title.
     options: keyword arguments of ``Figure.subplots``, as ``sharex``.
     Returns (figure; list of its ``count`` axes, row by row).  Of an odd number above 1 the last
-    place stays empty.
+    position stays empty.
     """
     columns = min(2, count)
     rows = -(-count // columns)  # rounded up
@@ -337,7 +337,7 @@ def field_curves(data: Dataset) -> Figure:
 def stresses(data: Dataset) -> Figure:
     """Draw pressure and, where it is known, shear stress along the contact.
 
-    data: dataset with ``x``, place along the contact, ``p``, pressure, and, but for a cover,
+    data: dataset with ``x``, position along the contact, ``p``, pressure, and, but for a cover,
         ``tau``, shear stress, with the attribute units; of several states, along other axes than
         the first that x varies along, the first is drawn.
     Returns the :class:`matplotlib.figure.Figure`, with the curves in one panel.
@@ -394,7 +394,7 @@ def equilibria(data: Dataset) -> Figure:
     speeds = speeds[speeds > 0.0]
     # the initial values make it false where all speeds are 0
     if speeds.max(initial=0.0) > 100.0 * speeds.min(initial=np.inf):
-        axes.set_yscale("symlog", linthresh=speeds.min())  # it has a place for rest, V = 0
+        axes.set_yscale("symlog", linthresh=speeds.min())  # it shows rest, V = 0, too
     if data["V"].attrs.get("units", "1") != "1" and speeds.max(initial=0.0) > _FASTEST:
         axes.set_ylim(*np.clip(axes.get_ylim(), -_FASTEST, _FASTEST))
     axes.legend(frameon=False)
