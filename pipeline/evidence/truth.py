@@ -228,14 +228,14 @@ def enclosed(given: Row, bits: int, near: Row | None = None) -> Row:
     raise ConvergenceError(f"contact_enclosure: {_MOST_BITS} bits do not suffice")
 
 
-def condition_numbers(given: Row, bits: int = 40) -> dict[str, float]:
+def condition_numbers(given: Row) -> dict[str, float]:
     """Sum over the inputs of |d ln f/d ln input| for every f: the relative error of f for one in
     each input.
 
     By differences with a relative step of 2^-180, far above the balls and far below anything that
     bends; alpha moves up, away from 1, and delta down, away from delta_star.
     """
-    bits += _STEP_BITS
+    bits = 40 + _STEP_BITS
     base = enclosed(given, bits)
     del base["full_slip"]
     total = dict.fromkeys(base, 0.0)
@@ -253,13 +253,13 @@ def condition_numbers(given: Row, bits: int = 40) -> dict[str, float]:
     return total
 
 
-def slopes(given: Row, bits: int = 100) -> Row:
+def slopes(given: Row) -> Row:
     """dQ_dV and dM_dV at fixed delta, dQ_ddelta at fixed V, by central differences that know no
     formula.
 
     V > 0 and 0 < delta < delta_star.  Their own error is of the order of the step squared, 2^-360.
     """
-    bits += _STEP_BITS
+    bits = 100 + _STEP_BITS
     near = enclosed(given, bits)
     found = {}
     with flint.ctx.workprec(4 * bits):

@@ -498,9 +498,7 @@ def test_counts_and_times_that_cannot_be_are_refused(built, name):
 @pytest.mark.parametrize(
     "name, model, change, said",
     [
-        ("alike", "Roller", "token", "token: must be {"),
         ("unlike", "Roller", "token", "token: must be {"),
-        ("alike", "ContactElement", "", "use model exchange"),
         ("unlike", "ContactElement", "", "use model exchange"),
         ("unlike", "Roller", "events", "eventModeUsed: must be false"),
     ],

@@ -42,6 +42,7 @@ def of_column(content):
     return read_column(file(content, "starts.csv"), "V0", "1")
 
 
+LAW = partial(vr.tables.law, 11.0)
 DECADES = np.logspace(-1, 1, 11)
 #: temperatures of two curves
 TWO = np.repeat([20.0, 0.0], 10)
@@ -86,6 +87,30 @@ REFUSED = [
         },
     ),
     *each(
+        lambda table, path: vr.tables.export(table(), path),
+        {
+            "a name that ends in .nc, .cdf, .csv, .txt, .mat for a grid": (grid, "t.h"),
+            "two inputs": (grid, "t.txt"),
+            "a name in C (letters, digits, _; no digit first": (LAW, "my-rubber.h"),
+            "no keyword of C or C++, nor vr_...), as rubber.h": (LAW, "double.h"),
+        },
+    ),
+    *each(
+        partial(vr.Prony.creep, T=[1.0, 0.1]),
+        {
+            "alpha | one for each material": {"J": [[0.5, 0.1]] * 2, "alpha": [1.0, 2.0, 3.0]},
+            "alpha | 2.0": {"J": [0.25, 0.25], "alpha": 3.0},
+            "sum of J = 2e+300: must be below 1": {"J": [1.7e308, 1.7e308]},
+        },
+    ),
+    *each(
+        partial(vr.Coastdown, sigma=0.1),
+        {
+            "'V': ..., 'omega': ...": (TIMES, TIMES, TIMES),
+            "2.0, 1.0 at indices 1, 2": ([0.0, 2.0, 1.0], [1.0, 1.0, 1.0]),
+        },
+    ),
+    *each(
         of_column,
         {
             "line 4 ('x') is not a line of numbers": "V0;mu\n1;0.1\n2;0.2\nx",
@@ -117,27 +142,6 @@ REFUSED = [
             "V, delta, alpha": lambda: vr.tables.interpolate(grid(), V=0.2, alpha=1.0),
             "broadcast": lambda: vr.tables.interpolate(
                 grid(), V=[0.1, 0.2], delta=0.01, alpha=[2.0] * 3
-            ),
-            "a name that ends in .nc, .cdf, .csv, .txt, .mat for a grid": lambda: vr.tables.export(
-                grid(), "t.h"
-            ),
-            "two inputs": lambda: vr.tables.export(grid(), "t.txt"),
-            "alpha | one for each material": lambda: vr.Prony.creep(
-                [[0.5], [0.6]], [1.0], alpha=[1.0, 2.0, 3.0]
-            ),
-            "alpha | 2.0": lambda: vr.Prony.creep([0.5], [1.0], alpha=3.0),
-            "sum of J = 2e+300: must be below 1": lambda: vr.Prony.creep(
-                [1.7e308, 1.7e308], [1.0, 0.1]
-            ),
-            "a name in C (letters, digits, _; no digit first": lambda: vr.tables.export(
-                vr.tables.law(11.0), "my-rubber.h"
-            ),
-            "no keyword of C or C++, nor vr_...), as rubber.h": lambda: vr.tables.export(
-                vr.tables.law(11.0), "double.h"
-            ),
-            "'V': ..., 'omega': ...": lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1),
-            "2.0, 1.0 at indices 1, 2": lambda: vr.Coastdown(
-                [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
             "V0 of the record is not given": (
                 lambda: vr.identify(roller(), ranges("E"), resistance(), starts=1).predict(

@@ -73,23 +73,20 @@ def test_data_over_the_band_determine_M(growth, thickness):
 @pytest.mark.parametrize("thickness", [None, 0.01])
 def test_a_series_that_ends_below_the_frequencies_in_the_cold(thickness):
     """It has almost no loss there: a warning where M is far below that of a series with shorter
-    times, and none for this one, for data with their own band, or without a shift.
+    times, and none for this one and for data with their own band.
     """
-    rubber = vr.Material(
-        4e6, 0.49, vr.Prony([1.0, 2.0], [0.1, 1e-3]), temperature=20.0, thickness=thickness
-    )
-    wide = replace(rubber, prony=vr.Prony([1.0, 2.0, 4.0, 9.0], [0.1, 1e-3, 1e-5, 1e-7]))
-    shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
-    rollers = [
-        pair(vr.Material.rigid(), each.at(-10.0, shift), load=1e3, coupled=False)
-        for each in (rubber, wide, replace(rubber, measured=vr.Measured(1e3, 1e9, 0.0)))
-    ]
+
+    def M(*series, **more):
+        rubber = vr.Material(4e6, 0.49, vr.Prony(*series), thickness=thickness, **more)
+        cold = rubber.at(-10.0, vr.WLF(C1=8.86, C2=101.6, T0=20.0))
+        return pair(vr.Material.rigid(), cold, load=1e3, coupled=False).contact(2.0, delta=0.0).M
+
+    narrow = [1.0, 2.0], [0.1, 1e-3]
     with pytest.warns(vr.ModelWarning, match="M is probably too small"):
-        narrow = rollers[0].contact(2.0, delta=0.0).M
+        found = M(*narrow)
     warnings.simplefilter("error")
-    assert narrow < 0.5 * rollers[1].contact(2.0, delta=0.0).M
-    rollers[2].contact(2.0, delta=0.0)
-    pair(vr.Material.rigid(), rubber, load=1e3, coupled=False).contact(1e4, delta=0.0)
+    assert found < 0.5 * M([1.0, 2.0, 4.0, 9.0], [0.1, 1e-3, 1e-5, 1e-7])
+    M(*narrow, measured=vr.Measured(1e3, 1e9, 0.0))
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")

@@ -62,14 +62,13 @@ def kernel(u: NDArray, nu: float) -> NDArray:
     return result
 
 
-def load(h: float, nu: float, points: int = _POINTS) -> float:
+def load(h: float, nu: float) -> float:
     """Return the load of an elastic layer over that of Hertz at the same half-width.
 
     h: thickness over the half-width.
     nu: Poisson's ratio.
-    points: of collocation.
     """
-    n = points + 1
+    n = _POINTS + 1
     s = np.cos(np.arange(1, n) * np.pi / n)
     x = np.cos((np.arange(n) + 0.5) * np.pi / n)
     weights = np.pi / n * (1.0 - s * s)
