@@ -186,7 +186,7 @@ class Step(NamedTuple):
     h : length in tau
     segment : index of the segment of the drive in which it lies
     initial_slope_known : whether the slope of the second unknown at the left end is finite and
-    known (V > 0)
+        known: True in full slip, and in partial slip for V > ZERO_SPEED
     undriven : whether nothing drives from there on: then V is measured relative to itself and may
     come to rest
     """
@@ -221,8 +221,8 @@ class Workspace(NamedTuple):
     with_quadratures : whether distance, angle and energies are requested
     with_forces : whether force and torque are requested
     switches : (m, 2), filled with t and the code of the regime after each regime change, or
-        DIRECTION_REVERSED, as far as it has room
-    step_ends : filled with the end t of each accepted step, as far as it has room
+        DIRECTION_REVERSED, until it is full
+    step_ends : filled with the end t of each accepted step, until it is full
     nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`.collocation`)
     p_matrix, d_matrix : pointers to the inverse Newton matrices of p and of the second unknown,
     column by column

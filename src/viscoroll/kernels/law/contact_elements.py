@@ -3,7 +3,8 @@
 Lengths are divided by l0, the contact length at rest of half-spaces; slopes by l0/R; tractions so
 that an elastic half-space of the summed long-time compliance has the slope (1/pi) int p(y)/(x - y)
 dy.  There are N elements.  Nodes ascend from the rear edge to the front edge; tractions are linear
-between them, and 0 at the two outer ones.  Slopes are collocated at one place in each element.
+between them, and 0 at the two outer ones.  Slopes are collocated at one point in each element, the
+collocation point.
 The equations in which the matrices enter are those of :mod:`.contact_zones`.
 """
 
@@ -23,7 +24,7 @@ LOWEST = -24.5
 WIDTH = 0.35
 #: number of bins: up to |x| = exp(1.4), four contact lengths at rest
 BINS = 74
-#: largest part of the elements that gather at spots
+#: largest fraction of the elements that the refinements of a mesh (its spots) may take
 _SPOTS_PART = 0.7
 #: element over twice the length of a mode below and above which its local part is taken from a
 #: series
@@ -40,13 +41,13 @@ class Contact(NamedTuple):
     Inner node i is node i + 1 of the mesh; element e lies between nodes e and e + 1.
 
     nodes : (N + 1,), x of the nodes, from -c to c.
-    at : (N,), x of the places of collocation, one in each element.
-    H, T, C : (N, N - 1), slope by pressure, strain by shear and coupling at the places, by the
-        tractions at inner nodes (:func:`assemble`).
+    at : (N,), x of the collocation points, one in each element.
+    H, T, C : (N, N - 1), slope by pressure, strain by shear and coupling at the collocation points,
+        by the tractions at inner nodes (:func:`assemble`).
     p, q : (N - 1,), pressure and shear at inner nodes.
-    strain : (N,), u' at the places.
+    strain : (N,), u' at the collocation points.
     zone : (N - 1,), 0 for stick, 1 or -1 for the sign of the slip, at inner nodes.
-    place : (N + 1,), parameters of the nodes, from 0 to 1.
+    place : (N + 1,), parameters t of the nodes in the mesh, from 0 to 1.
     """
 
     nodes: Any
@@ -78,7 +79,7 @@ def _gathered(t, spots, used):
         distance = t - spots[k, 0]
         width = spots[k, 1]
         weight = spots[k, 2]
-        # odd about the spot, so that it ascends everywhere: the slope is the same on both sides
+        # odd about t_k, so that it ascends everywhere: the slope is the same on both sides
         total += math.copysign(weight * math.log(1.0 + abs(distance) / width), distance)
         rate += weight / (abs(distance) + width)
     return total, rate
@@ -86,19 +87,19 @@ def _gathered(t, spots, used):
 
 @kernel
 def make_mesh(c, spots, used, contact):
-    """Write the nodes of a mesh and the places of collocation, one in each element.
+    """Write the nodes of a mesh and the collocation points, one in each element.
 
-    The elements are equal in s(t) = a t + sum of weight ln(1 + |t - spot|/width): geometric towards
-    each spot.
+    A spot is a refinement about t_k.  The elements are equal in s(t) = a t + sum of weight sgn(t -
+    t_k) ln(1 + |t - t_k|/width): their sizes form a geometric series towards each t_k.
 
     c : half length of the contact, > 0.
-    spots : (most, 3): parameter in [0, 1], width > 0 in the parameter, and number of elements in a
-        factor of e of the distance from it; changed in place: weights are reduced where spots would
-        take more than :data:`_SPOTS_PART`.
+    spots : (most, 3): t_k in [0, 1]; width > 0 in units of t; weight, the number of elements in a
+        factor of e of the distance from t_k.  The weights are reduced in place where spots would
+        take more than :data:`_SPOTS_PART` of the elements.
     used : int, number of spots, rows of ``spots`` that count.
-    contact : :class:`Contact`, of which are written: nodes, ascending from -c to c; places of
-        collocation, each half an element after the node before it; the parameter of each node, from
-        0 to 1.
+    contact : :class:`Contact`, of which are written: nodes, ascending from -c to c; collocation
+        points, each half an element after the node before it; the parameter t of each node, from 0
+        to 1.
     Returns nothing.
     """
     count = contact.at.size
@@ -113,11 +114,11 @@ def make_mesh(c, spots, used, contact):
         high *= reduced
     plain = count - (high - low)  # a of s(t), such that s(1) - s(0) is the number of elements
     t = 0.0
-    # Nodes and, half an element after each, places: t with s(t) - s(0) = n/2, by Newton's
-    # iteration, bisected where it leaves its bracket.
+    # Nodes and, half an element after each, collocation points: t with s(t) - s(0) = n/2, by
+    # Newton's iteration, bisected where it leaves its bracket.
     for n in range(2 * count + 1):
         wanted = 0.5 * n + low  # low: total of the spots at t = 0, so that s(0) counts as 0
-        left = t  # s ascends: t is not below that of the place before
+        left = t  # s ascends: t is not below that of the point before
         right = 1.0
         t = min(t + 0.5 / count, 1.0)  # first guess: half an element of equal ones further
         for _ in range(_MOST_STEPS):
@@ -138,7 +139,7 @@ def make_mesh(c, spots, used, contact):
             t = 1.0
         # dense at both ends, as tractions fall like roots there
         x = -c + 2.0 * c * math.sin(0.5 * math.pi * t) ** 2
-        if n % 2:  # odd: the place in element n // 2, else node n // 2
+        if n % 2:  # odd: the collocation point in element n // 2, else node n // 2
             contact.at[n // 2] = x
         else:
             contact.nodes[n // 2] = x
@@ -152,8 +153,10 @@ def _add_local(local, contact):
 
     local : (modes, 2), strength and length, divided by l0, of each mode, 0 for the length of the
         instantaneous one.
-    contact : :class:`Contact`, whose matrix C is changed: row e belongs to the place in element e.
-    The tractions are odd about the two outer nodes, in the parameter of the mesh.  Returns nothing.
+    contact : :class:`Contact`, whose matrix C is changed: row e belongs to the collocation point in
+        element e.
+    The tractions are odd about the two outer nodes, in the parameter of the mesh.
+    Returns nothing.
 
     The part of the coupling that acts at the middle of an element of length h as if at once is the
     integral of the memory times what linear tractions leave out: the parabola that is 1 there and 0
@@ -183,7 +186,7 @@ def _add_local(local, contact):
                 part += strength * (
                     (1.0 - decay) / 3.0 - (2.0 - decay * (r * (r + 2.0) + 2.0)) / (r * r)
                 )
-        # What linear tractions leave out at the place: the cubic through four nodes, with weights
+        # What linear tractions leave out at the point: the cubic through four nodes, with weights
         # (-1, 9, 9, -1)/16 in the middle of the element, less the linear interpolation, with
         # weights 1 - ``ahead`` and ``ahead``.  Column n belongs to node n + 1.
         ahead = (contact.at[e] - nodes[e]) / h
@@ -212,13 +215,14 @@ def assemble(kernels, contact):
         ``instant`` x ln|x|/pi of the first two.  Sign 0 is that of x > 0, the constant of a
         polynomial in y comes first.  ``instant``: instantaneous compliance over the summed
         long-time compliance.  ``local``: local coupling by modes (:func:`_add_local`).
-    contact : :class:`Contact`, with a mesh of at most exp(1.4) in all, in which no place is a node;
-        its matrices are written: slope by pressure, strain by shear, and coupling, at the place in
-        element i by the traction 1 at inner node n.  Returns nothing.
+    contact : :class:`Contact`, with a mesh of at most exp(1.4) in all, in which no collocation
+        point is a node; its matrices are written: slope by pressure, strain by shear, and coupling,
+        at the collocation point in element i by the traction 1 at inner node n.
+    Returns nothing.
     """
     nodes = contact.nodes
     N = contact.at.size
-    # Second antiderivatives of the three kernels, at the place i less each node.
+    # Second antiderivatives of the three kernels, at the distance of point i from each node.
     first = np.empty(N + 1)
     second = np.empty(N + 1)
     third = np.empty(N + 1)
@@ -258,8 +262,8 @@ def assemble(kernels, contact):
 
 @inline_kernel
 def node_value(values, e):
-    """Return the traction at node e of a mesh, 0 at the two outer ones; ``values``: those at inner
-    nodes.
+    """Return the traction at node e of a mesh, which is 0 at the two outer nodes; ``values``: the
+    tractions at inner nodes.
     """
     return values[e - 1] if 0 < e <= values.size else 0.0
 
@@ -268,7 +272,7 @@ def node_value(values, e):
 def moments(nodes, values):
     """Return (integral, first moment about the middle of the contact) of a traction, floats.
 
-    nodes : (N + 1,), places of the nodes.
+    nodes : (N + 1,), x of the nodes.
     values : (N - 1,), traction at inner nodes.
     """
     total = 0.0
@@ -287,12 +291,12 @@ def moments(nodes, values):
 def product(contact, values, slope):
     """Return the integral of a traction times a slope that is linear in each element.
 
-    The gradient in an element is that between the places of its neighbours, so that a linear slope
-    is exact.
+    The gradient in an element is that between the collocation points of its neighbours, so that a
+    linear slope is exact.
 
     contact : :class:`Contact`, whose mesh is read, N >= 2.
     values : traction at inner nodes, (N - 1,).
-    slope : (N,), the slope at the places ``at``, one in each element.
+    slope : (N,), the slope at the collocation points, one in each element.
     Returns a float, in the units of the module.
     """
     nodes = contact.nodes

@@ -1,8 +1,8 @@
 """Zones of stick and slip of one contact by Coulomb's law, and the linear system of its tractions.
 
-With pressure p and shear q at inner nodes, g the place of the middle of the contact ahead of the
-axis, x the places of collocation from the middle on, u' the strain of the surface there, d = kappa
-delta the creepage, mu the coefficient of friction, and the matrices H, T and C of
+With pressure p and shear q at inner nodes, g the distance of the middle of the contact ahead of the
+axis, x the collocation points, counted from the middle, u' the strain of the surface there, d =
+kappa delta with the creepage delta, mu the coefficient of friction, and the matrices H, T and C of
 :mod:`.contact_elements`, whose units are those of this module,
 
     H p + C q = x + g        u' = T q - C p
@@ -73,8 +73,7 @@ def solve(matrix):
 def eliminate(contact, coupled):
     """Eliminate pressure and g: p = a - B q.
 
-    contact : :class:`.contact_elements.Contact`, of which H, C and the places of collocation are
-        read.
+    contact : :class:`.contact_elements.Contact`, of which H, C and the collocation points are read.
     coupled : bool, whether C is not 0; else it is not read.
     Returns (whether the matrix has an inverse, a bool; (N, N): B in its first N - 1 columns, a in
     the last; the last row belongs to g; numbers without meaning if there is no inverse).  Without

@@ -5,13 +5,15 @@ A table is one vector of doubles: a head, nodes, edges of each row, fields, each
 in them nodes.  Its speed is u = kappa |V|, its creep D = 2 kappa delta, with the slenderness kappa
 = R/l0 and the creepage delta.  Three creeps divide the states of a speed, each a cubic spline of
 ln u: the onset of full slip of negative sign, D_-, a creep D_0 between, and the onset of positive
-sign, D_+.  With sigma = 1 above D_0 and -1 below, a state has the place
+sign, D_+.  With sigma = 1 above D_0 and -1 below, a state has the relative distance w from D_0 and
+the coordinate t:
 
     w = (D - D_0)/(D_sigma - D_0),   0 <= w <= 1 in partial slip,
     t = sigma w   or   t = sigma sqrt(1 - (1 - w)^(2/3))
 
-and each field is a tensor spline in (ln u, t), the second form of t where the table is graded:
-there fields of a contact in which shear acts on pressure are smooth at D_0 and at the onsets.
+Each field is a tensor spline in (ln u, t), with the second form of t where the table is graded:
+with this t the fields of a contact in which shear acts on pressure are smooth at D_0 and at the
+onsets.
 Below the first node a field is linear in u between the limit of u = 0 and that node, beyond the
 last one linear in 1/u between it and the limit of u infinite.
 
@@ -36,9 +38,9 @@ GRADED = 2
 FIRST = 3
 #: Last node of u.
 LAST = 4
-#: Step of equal steps in ln u, and after it the inverse; 0 where they are not equal.
+#: Step of the nodes in ln u if all steps are equal, and after it the inverse; else 0.
 U_STEP = 5
-#: Step of equal steps in t, and after it the inverse; 0 where they are not equal.
+#: Step of the nodes in t if all steps are equal, and after it the inverse; else 0.
 T_STEP = 7
 #: Where the nodes of t begin; those of ln u begin at :data:`HEAD`.
 T_BEGIN = 9
@@ -48,11 +50,12 @@ EDGES = 10
 FIELDS = 11
 #: Number of fields.
 FIELD_COUNT = 12
-#: Largest u: infinite, or LAST for a table without the limit of u infinite.
+#: Largest u that is allowed: 1e300, in place of infinity, for a table with the limit of u infinite;
+#: else the number at LAST.
 MOST = 13
 #: 1 if slip is full beyond the onsets, 0 where nothing is known there.
 SLIPS = 14
-#: Largest |Q/mu|: 1, or infinite where it is not known.
+#: Largest |Q/mu|: 1, or infinite if the limit of friction is not known.
 LIMIT = 15
 #: Numbers of the head.
 HEAD = 16
@@ -78,18 +81,20 @@ LENGTH = 3
 SHIFT = 4
 #: Field: beta.
 STICK = 5
-#: Field: 2 kappa times the work of shear on the strain of the half-space; of the cylinder follows.
+#: Field: 2 kappa times the work of shear on the strain of the half-space; that of the cylinder
+#: follows.
 WORK = 6
-#: Field of graded tables alone: 2 kappa times the friction in slip per unit of V.
+#: Field that only graded tables have: 2 kappa times the slip loss per unit of V.
 FRICTION = 8
-#: Numbers of a field at a node: its value, slopes over ln u and t, and the mixed one; a vector of
-#: :mod:`..numerics.simd`.
+#: Numbers of a field at a node: its value, its slopes over ln u and t, and its mixed derivative; a
+#: vector of :mod:`..numerics.simd`.
 JET = 4
 
-#: 1 - w below which a place counts as this far from the onset: slopes there are 0 to rounding.
+#: Least 1 - w, the distance from the onset, for which slopes are computed: it stands for smaller
+#: distances, where slopes are 0 to rounding.
 _ONSET_DISTANCE = 1e-24
-#: |t| below which a place counts as this far from D_0: 1/|t| stays finite, and fields, which are
-#: quadratic in t there, are those of D_0 exactly.
+#: Least |t|, which stands for smaller ones: 1/|t| stays finite, and fields, which are quadratic in
+#: t there, are those at D_0 exactly.
 _MIDDLE_DISTANCE = 1e-170
 #: Bisections of d in [-1, 1], to rounding.
 _HALVINGS = 53
@@ -110,7 +115,9 @@ class Weights(NamedTuple):
 
 
 class FieldValue(NamedTuple):
-    """A field of the table: its value, and its slopes over u at fixed w and over w at fixed u."""
+    """A field of the table at a state: its value, and its derivatives with respect to u at fixed w
+    and to w at fixed u.
+    """
 
     value: float
     du: float
@@ -118,7 +125,9 @@ class FieldValue(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """A creep that divides the states of a speed, and its two derivatives over u."""
+    """A creep that divides the states of a speed, and its first and second derivative with respect
+    to u.
+    """
 
     value: float
     du: float
@@ -130,8 +139,8 @@ class Interval(NamedTuple):
 
     first : int, number of the left node.
     h, inverse : length of the interval, and its inverse.
-    s, r : parts of the interval to the left and to the right of the coordinate, each without loss
-        of digits where it is small; beyond 0 to 1 outside of the nodes.
+    s, r : fractions of the interval to the left and to the right of the coordinate, each without
+        loss of digits where it is small; outside of the nodes one is below 0, the other above 1.
     """
 
     first: int
@@ -144,7 +153,7 @@ class Interval(NamedTuple):
 @inline_kernel
 def _interval(begin, count, step, x, table):
     """Return the :class:`Interval` of a coordinate; outside of the nodes it is the first or the
-    last.
+    last interval.
 
     begin, count : ints, where the nodes begin in the vector, and their number, >= 2.
     step : int, index in the head of the step of the axis: U_STEP or T_STEP; the inverse of the step
@@ -164,7 +173,8 @@ def _interval(begin, count, step, x, table):
         # down to it, while the last node would begin an interval that does not exist.
         left = np.floor(min(max(y, -np.float64(middle)), count - 1.5 - middle))
         return Interval(middle + np.int64(left), h, inverse, y - left, left + 1.0 - y)
-    # Else it is found by bisection: ``low`` is its left node, ``span`` the intervals left.
+    # Else it is found by bisection: ``low`` is the left node and ``span`` the number of the
+    # intervals among which it is.
     low = np.int64(0)
     span = count - 1
     while span > 1:
@@ -185,13 +195,14 @@ def _cubic(first, at, dx):
 
     first : int, number of the row or node at the left end.
     at : :class:`Interval` of the coordinate between them.
-    dx : float, derivative of the coordinate over what derivatives are asked for, u or w.
+    dx : float, derivative of the coordinate with respect to u or w, the variable of the slopes that
+        are returned.
     """
     h = at.h
     s = at.s
     r = at.r
     slope = 6.0 * s * r * dx * at.inverse  # derivative of a1, and minus that of a0
-    # b0 and b1 multiply slopes, and have the factor h; their derivatives over the coordinate none
+    # b0 and b1 multiply slopes, and have the factor h, which their derivatives do not have
     values = (1.0 + 2.0 * s) * r * r, s * s * (3.0 - 2.0 * s), s * r * r * h, -s * s * r * h
     slopes = -slope, slope, r * (1.0 - 3.0 * s) * dx, s * (3.0 * s - 2.0) * dx
     return Weights(first, values, slopes)
@@ -243,8 +254,8 @@ def edge_at(name, u, speed, table):
     value = a0 * f0 + a1 * f1 + b0 * g0 + b1 * g1
     da0, da1, db0, db1 = speed.slopes
     slope = da0 * f0 + da1 * f1 + db0 * g0 + db1 * g1
-    # Second derivative over u: of a function linear in u, of one linear in 1/u, and of the cubic in
-    # x = ln u, (f'' - f')/u^2 with f' = u slope.
+    # Second derivative with respect to u, in this order: of a function linear in u, of one linear
+    # in 1/u, and of the cubic in x = ln u, (f'' - f')/u^2 with f' = u slope.
     if u <= table[FIRST]:
         return Edge(value, slope, 0.0)
     if u >= table[LAST]:
@@ -261,9 +272,10 @@ def edge_at(name, u, speed, table):
 
 @inline_kernel
 def locate_creep(w, sigma, table):
-    """Return the :class:`Weights` of the nodes in t at a place, with derivatives over w.
+    """Return the :class:`Weights` of the nodes in t at a relative distance w from D_0, with
+    derivatives with respect to w.
 
-    w : float, place of the module, clipped to [0, 1]; from 1 on, in full slip, derivatives are 0.
+    w : float, as in the module, clipped to [0, 1]; from 1 on, in full slip, derivatives are 0.
     sigma : float, 1.0 or -1.0, the side.
     table : vector of the module.
     """
@@ -271,7 +283,7 @@ def locate_creep(w, sigma, table):
     t = 1.0 - rest  # |t|
     slope = 1.0  # d|t|/dw
     # With root = (1 - w)^(1/3), |t| = sqrt(1 - root^2) has the slope 1/(3 |t| root).  Both are kept
-    # from 0, so that the slope is finite.  1 - root^2 = w (1 + root)/(1 + root + root^2) has all
+    # above 0, so that the slope is finite.  1 - root^2 = w (1 + root)/(1 + root + root^2) has all
     # digits of w.
     if table[GRADED] > 0.0:
         root = np.cbrt(max(rest, _ONSET_DISTANCE))
@@ -287,11 +299,12 @@ def locate_creep(w, sigma, table):
 
 
 class Cell(NamedTuple):
-    """The four nodes around a state, in the order of rows and in them of nodes, and their weights.
+    """The four nodes around a state, ordered by rows and within a row by nodes, and their weights.
 
-    at : int, where the first node of the cell is in the first field.
-    down, plane : int, numbers from a row to the next one, and from a field to the next one.
-    corners : four vectors of four numbers, weights of what a field has at each node.
+    at : int, index of the first node of the cell in the first field.
+    down, plane : int, distance, in numbers, from a row to the next one, and from a field to the
+        next one.
+    corners : four vectors of four numbers, weights of the JET numbers of a field at each node.
     speed, place : :class:`Weights` of the rows, and of the nodes.
     """
 
@@ -346,8 +359,8 @@ def cell_at(speed, place, table):
 
 @inline_kernel
 def _nodes_of(name, cell, table):
-    """Return what a field has at the four nodes of a cell, four vectors of four in the order of
-    ``corners`` of :class:`Cell`.
+    """Return the JET numbers of a field at the four nodes of a cell, four vectors of four in the
+    order of ``corners`` of :class:`Cell`.
 
     name : int, number of the field, TRACTION to FRICTION, as far as the table has it; not checked.
     cell : :class:`Cell` of :func:`cell_at`.
@@ -360,7 +373,7 @@ def _nodes_of(name, cell, table):
 
 @inline_kernel
 def _combined(weights, nodes):
-    """Return the sum of weights of four nodes times what a field has there, a float.
+    """Return the sum over four nodes of weights times the JET numbers of a field, a float.
 
     weights : four vectors of four, of :func:`_corners`.
     nodes : four vectors of four in the same order, of :func:`_nodes_of`.
@@ -375,7 +388,7 @@ def _combined(weights, nodes):
 
 @inline_kernel
 def value_at(name, cell, table):
-    """Return the value of a field, a float, for w >= 0; for w < 0 that of w = 0.
+    """Return the value of a field, a float; for w < 0 the value at w = 0.
 
     name : int, number of the field, TRACTION to FRICTION, as far as the table has it; not checked.
     cell : :class:`Cell` of :func:`cell_at`.
@@ -389,7 +402,7 @@ def field_at(name, w, cell, table):
     """Return a field as :class:`FieldValue`, continued along its tangent for w < 0.
 
     name : int, TRACTION to WORK + 1.
-    w : float, place of the state.
+    w : float, relative distance of the state from D_0, as in the module.
     cell : :class:`Cell` of :func:`cell_at`.
     table : vector of the module.
     """
@@ -404,11 +417,11 @@ def field_at(name, w, cell, table):
 
 
 class Place(NamedTuple):
-    """Where a creep D lies at one speed.
+    """Side and relative distance from D_0 of a creep D at one speed, as in the module.
 
     sigma : side, 1.0 or -1.0.
-    w : place, from 1 on in full slip.
-    dw_dD, dw_du : derivatives of w in D at fixed u and in u at fixed D.
+    w : relative distance; 1 or more in full slip.
+    dw_dD, dw_du : derivatives of w with respect to D at fixed u and to u at fixed D.
     """
 
     sigma: float
@@ -443,10 +456,10 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
     table : vector of the module.
     kappa, mu : slenderness and coefficient of friction of each state, > 0, (n,).
     u : kappa V of each state, >= 0, (n,).
-    load : required value of Q - M_half_space, with ``of_spin`` of Q + M_cylinder, (n,).
+    load : required value of Q - M_half_space, or if ``of_spin`` of Q + M_cylinder, (n,).
     of_spin : bool, whether the cylinder is balanced, instead of the axis.
-    out : (n, 2), written: 2 kappa delta, within the onsets of full slip; the part of ``load`` that
-        the friction cannot balance, 0 within the onsets.
+    out : (n, 2), written: 2 kappa delta, between the onsets of full slip or at one of them; the
+        part of ``load`` that friction cannot balance, 0 between the onsets.
     Returns nothing.
     """
     for n in range(u.size):

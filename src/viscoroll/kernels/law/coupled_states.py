@@ -5,15 +5,17 @@ The equations are those of docs/theory_covers.md, Pressure and shear together.  
 :mod:`.contact_elements`: lengths are divided by l0, slopes and creep by l0/R.  Letters:
 
 - kappa = R/l0, mu the coefficient of friction, delta the creepage.
-- x: place ahead of the middle of the contact.  c: half length of the contact, lam = 2 c.  g: place
-  of its middle ahead of the axis, epsilon = g/c.
+- x: position, the distance ahead of the middle of the contact.  c: half length of the contact, lam
+  = 2 c.  g: distance of its middle ahead of the axis, epsilon = g/c.
 - p, q: pressure, and shear on the cylinder along V.  The load int p is pi/8, as p = sqrt(c^2 - x^2)
   of an elastic half-space has int p = pi c^2/2, and c = 1/2 at rest.
 - d = kappa delta.  u': strain of the surface; d - u' is the slip divided by V.
 - M: rolling moment divided by P R, kappa M = g + int x p/int p.  Q: traction, int q/(mu int p) is
   Q/(mu P).
-- The rear edge is at x = -c, where nodes begin; the parameter of a node is 0 there, 1 at the front
-  edge.
+- The rear edge is at x = -c, where nodes begin.  The parameter t of the mesh is 0 there and 1 at
+  the front edge.
+- Edge of a zone: boundary between two neighbouring zones, of stick, of slip of one sign or of slip
+  of the other sign.  The mesh is refined there (``spots``).
 """
 
 import math
@@ -46,35 +48,36 @@ COLUMNS = 10
 #: status of a state: solved (0); the zones were not found (1); negative pressure (2); the load was
 #: not reached (3); singular matrix (4)
 SOLVED, NO_ZONES, TENSION, NO_LOAD, SINGULAR = range(5)
-#: distance of an edge from its spot times the number of elements from which on the mesh is made
-#: anew
+#: largest distance, in the parameter of the mesh times the number of elements, of an edge of a zone
+#: from the refinement that was made for it; beyond it a new mesh is made
 OFF_SPOT = 0.25
-#: number of meshes after which the last one is kept
+#: number of new meshes after the first one, for one load; then the last mesh is kept
 _MOST_CENTRINGS = 6
 #: largest number of half lengths that are tried for one load
 _MOST_LENGTHS = 20
-#: relative error of the load, for which lam is then corrected to first order
+#: largest relative error of the load; lam is then corrected for this error to first order
 _LOAD_ERROR = 5e-6
-#: relative error of the load where only zones are needed
+#: largest relative error of the load where only zones are needed
 _ROUGH_LOAD = 1e-3
-#: least change of ln(c) from which a secant is taken: that of a new mesh is smaller
+#: change of ln(c) above which the slope is that of a secant: a new mesh alone changes ln(c) less
 _LEAST_CHANGE = 1e-3
 #: bounds of d ln(load)/d ln(half length)
 _LEAST_SLOPE = 0.7
 _LARGEST_SLOPE = 5.0
-#: most edges at which a mesh is refined
+#: largest number of refinements of a mesh
 MOST_SPOTS = 8
-#: width of the refinement at an edge times the number of elements, and elements in a factor of e
+#: refinement at an edge of a zone: its width in the parameter of the mesh, times the number of
+#: elements; and its weight, elements in a factor of e of the distance from the edge
 WIDTH_OF_SPOT = 0.1
 WEIGHT_OF_SPOT = 1.0
 #: elements in a factor of e of the distance from the front edge, down to the edge layer
 WEIGHT_OF_LAYER = 3.0
 #: integral of negative pressure, divided by the load, that counts as tension
 _TENSION = 1e-6
-#: steps of the bisection of the creep where the other slip opens: to 5e-4 of the distance of the
-#: onsets
+#: bisections of the creep at which slip of the other sign opens: to 5e-4 of the distance between
+#: both onsets of full slip
 _BISECTIONS = 11
-#: largest ratio of neighbouring steps over which states are continued
+#: largest factor by which the change between two states is extrapolated to the next one
 _LARGEST_STEP = 2.0
 
 
@@ -99,8 +102,8 @@ class Row(NamedTuple):
 
 
 def new_contact(count: int) -> Contact:
-    """Return the :class:`Contact` of ``count`` elements, of zeros but for equal parameters of the
-    nodes; all its inner nodes stick.
+    """Return a :class:`Contact` of ``count`` elements, of which all inner nodes stick: the
+    parameters of its nodes are equidistant, all other numbers are 0.
     """
     inner = count - 1
     return Contact(
@@ -119,23 +122,29 @@ def new_contact(count: int) -> Contact:
 
 @kernel
 def find_spots(contact, spots):
-    """Write the spots of a mesh, places at which it is refined, at the edges of the zones of a
-    contact; return their number, an int.
+    """Store where the mesh is to be refined: at each boundary between zones of stick and slip, or
+    between zones of opposite slip.
 
-    contact : :class:`Contact`, of which zones and parameters of nodes are read.
-    spots : (MOST_SPOTS, 3), parameter, width and weight of each
-        (:func:`.contact_elements.make_mesh`), written from the first row on, from the rear edge to
-        the front edge; further edges than it has rows are left out.
+    The boundary is put at the node that slips; if both slip, in opposite directions, at the rear
+    one.
+
+    contact : :class:`Contact`, of which ``zone`` and ``place``, the parameters of the nodes, are
+        read.
+    spots : (MOST_SPOTS, 3), written, one row for each boundary, from the rear edge of the contact
+        to the front edge: parameter t of the mesh, in [0, 1]; width in units of t; weight, the
+        number of elements in a factor of e of the distance from the boundary
+        (:func:`.contact_elements.make_mesh`).  Boundaries beyond the number of rows are left out.
+    Returns the number of boundaries that are stored, an int.
     """
     zone = contact.zone
     place = contact.place
     used = 0
-    # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
+    # place[i + 1] and place[i + 2] are the parameters of the inner nodes i and i + 1
     for i in range(zone.size - 1):
         if zone[i] != zone[i + 1] and used < spots.shape[0]:
-            # The edge counts as at the node that slips, of two that slip at the rear one.
+            # the node that slips: node i if it does, else node i + 1
             spots[used, 0] = place[i + 1] if zone[i] != 0.0 else place[i + 2]
-            # in the parameter, of which an element of an equal mesh has 1/N
+            # in the parameter: an element of a mesh of N = zone.size + 1 equal ones has 1/N
             spots[used, 1] = WIDTH_OF_SPOT / (zone.size + 1)
             spots[used, 2] = WEIGHT_OF_SPOT
             used += 1
@@ -144,21 +153,22 @@ def find_spots(contact, spots):
 
 @kernel(allocates=True)
 def gather(row, contact, c, spots):
-    """Make the mesh of a contact, which gathers at the edges of its zones and at the layer at the
-    front edge; return the number of edges, an int.
+    """Make the mesh of a contact, which is refined at the edges of its zones and at the layer at
+    the front edge.
 
     row : :class:`Row`, of which ``layer`` is read.
     contact : :class:`Contact`, whose mesh (``nodes``, ``at``, ``place``) is written, and whose
-        zones are carried to it, each node with the zone of the nearest one before.  Until then
-        ``place`` and ``zone`` are those of the last mesh.
+        zones are carried to the new mesh: each node gets the zone of the nearest node of the last
+        mesh.  On entry ``place`` and ``zone`` are those of the last mesh.
     c : float, half length divided by l0, > 0.
-    spots : (MOST_SPOTS, 3), written: the edges first, then the layer if it is thinner than an
-        element.
+    spots : (MOST_SPOTS, 3), written as by :func:`find_spots`: the edges of the zones first, then
+        the layer if it is thinner than an element and a row is left.
+    Returns the number of edges of zones that are stored, an int.
     """
     count = contact.at.size
     edges = find_spots(contact, spots)
     used = edges
-    # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
+    # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a point near t = 1 is
     # c pi^2 (1 - t)^2/2 behind the front edge.
     thin = math.sqrt(2.0 * row.layer / c) / math.pi
     if thin * count < 1.0 and used < MOST_SPOTS:
@@ -188,12 +198,13 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     mu : float, coefficient of friction, > 0.
     d : float, kappa times the creepage delta, of either sign; infinite, of any sign: full slip in
         the zones of ``contact``.
-    spots : (MOST_SPOTS, 3), refinements of the mesh at edges of zones, parameter, width and weight
-        each (:func:`.contact_elements.make_mesh`): scratch, written unless ``again``.
+    spots : (MOST_SPOTS, 3), refinements of the mesh as :func:`gather` stores them: scratch, written
+        unless ``again``.
     again : bool, whether the mesh of the previous call is kept and scaled to c.
     Returns three values: the status, an int, SOLVED, NO_ZONES or SINGULAR; the distance g of the
     middle of the contact ahead of the axis, a float, divided by l0; a bool, whether the edges of
-    the zones lie within OFF_SPOT elements of the refinements of the mesh, True in full slip.
+    the zones lie within OFF_SPOT elements of the refinements that were made for them, True in full
+    slip and without meaning where ``again``.
     """
     count = contact.at.size
     edges = 0  # number of edges at which the mesh is refined; 0 where the mesh is kept
@@ -216,8 +227,8 @@ def solve_contact(row, contact, c, mu, d, spots, again):
             return SINGULAR, 0.0, True
         return SOLVED, pressure_and_strain(S, B, contact), True
     good, g = find_zones(S, B, mu, d, contact)
-    # Edges of the zones of the solution.  With a mesh that is
-    # kept (edges = 0) the result is of no use, and find_length does not wait for it.
+    # Edges of the zones of the solution.  With a mesh that is kept (edges = 0) ``centred`` has no
+    # meaning, and find_length does not need it.
     found = np.empty((MOST_SPOTS, 3))
     centred = find_spots(contact, found) == edges
     for k in range(edges):
@@ -311,14 +322,14 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     error = 1.0  # ln(load/LOAD)
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
-        # after some meshes the last one is kept: else it could change from length to length
+        # after some meshes the last one is kept, since it might change with each length for ever
         status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
         total = write_state(contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
-        # A load that is not above 0 counts as e times too small, so that the contact grows.
+        # A load of 0 or below counts as too small by the factor e, so that the contact grows.
         error = math.log(total / LOAD) if total > 0.0 else -1.0
-        # The slope of a secant, bounded, or that of the caller where lengths are too close for one.
+        # the slope of the secant, within bounds; if the two lengths are too close, the last slope
         if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
         if abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
@@ -346,8 +357,8 @@ def finish_state(row, contact, out):
         M and 2 kappa times the work of the strain, of the cylinder.
     Returns nothing.
     """
-    # kappa M of the cylinder alone, and 2 kappa times the work of its strain, per load; where one
-    # body alone deforms they are all of columns 3 and 4, or nothing
+    # kappa M of the cylinder alone, and 2 kappa times the work of its strain, per load; where only
+    # one body deforms they are equal to columns 3 and 4, or 0
     if not row.split:
         out[5] = out[3] if row.cylinder else 0.0
         out[6] = out[4] if row.cylinder else 0.0
@@ -389,9 +400,9 @@ def full_slip(row, mu, sign, contact, c, out):
     best = -np.inf
     for e in range(count):
         best = max(best, sign * contact.strain[e])
-    # Places are at 0.5, 1.5 and 2.5 elements of the parameter from an edge; the parabola through
-    # the three strains in that coordinate, or in its square, is evaluated at 0 by Lagrange's
-    # formula.
+    # The collocation points are at 0.5, 1.5 and 2.5 elements of the parameter from an edge of the
+    # contact; the parabola through the three strains in that coordinate, or in its square, is
+    # evaluated at 0 by Lagrange's formula.
     power = 1.0 if row.coupled else 2.0
     x0 = 0.5**power
     x1 = 1.5**power
@@ -409,11 +420,12 @@ def full_slip(row, mu, sign, contact, c, out):
 
 @kernel(allocates=True)
 def move_edges(place, last, before, count, ahead):
-    """Move the nodes of a mesh to the edges of zones that are extrapolated from two states.
+    """Move the parameters of the nodes of a mesh along with the edges of zones, which are
+    extrapolated from two states.
 
-    place : parameters of the nodes, (N + 1,), ascending from 0 to 1, changed; they stay where edges
-        would meet.  The nodes themselves are not moved: :func:`gather` reads their parameters, at
-        which it carries zones and edges to the next mesh.
+    place : parameters of the nodes, (N + 1,), ascending from 0 to 1; changed, unless edges would
+        meet.  The nodes themselves are not moved: :func:`gather` reads their parameters, at which
+        it carries zones and edges to the next mesh.
     last, before : edges of the last state and of the one before it, in column 0, (MOST_SPOTS, 3).
     count : int, number of edges of both, >= 0.
     ahead : float, step to the next state divided by the step between the two, > 0.
@@ -444,12 +456,12 @@ def states_loop(row, mu, creeps, at, contact, c, slope, apart, out):
         pressure and traction of the last state.
     c, slope : floats, guesses of the first half length, divided by l0, and of d ln(load)/d ln(c),
         > 0.
-    apart : bool, whether each state starts from stick and the guess c instead; that its mesh begins
-        with the nodes of the state before has no effect, as all its nodes stick.
+    apart : bool, whether each state starts from stick and the guess c instead; the parameters of
+        the nodes are then those of the state before, without effect, since all nodes stick.
     out : (n, COLUMNS), written, all columns.
     Returns nothing.
     """
-    edges = np.zeros((2, MOST_SPOTS, 3))  # edges of the last two states, in turn
+    edges = np.zeros((2, MOST_SPOTS, 3))  # edges of the states with even and with odd numbers
     found = np.zeros(2, np.int64)  # their numbers
     guess = c
     steepness = slope
@@ -466,7 +478,8 @@ def states_loop(row, mu, creeps, at, contact, c, slope, apart, out):
         this = n % 2
         found[this] = find_spots(contact, edges[this])
         if 0 < n < creeps.size - 1:
-            # linear in ``at``: ln of the half length (column 9), and the edges if as many as before
+            # linear in ``at``: ln of the half length (column 9), and the edges if both states have
+            # the same number of them
             ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)
             guess *= (length / out[n - 1, 9]) ** ahead
             if found[0] == found[1]:
@@ -512,7 +525,8 @@ def touch_creep(row, mu, low, high, contact, c, slope):
     out = np.zeros(COLUMNS)
     a = low
     b = high
-    # first the creepage at which slip of sign + opens, then, if it is wanted, that at which - ends
+    # first the creepage at which slip of sign + opens; then, if it is needed, the creepage at which
+    # slip of sign - ends
     for ends in range(2):
         for _ in range(_BISECTIONS):
             middle = 0.5 * (a + b)
@@ -524,7 +538,7 @@ def touch_creep(row, mu, low, high, contact, c, slope):
                 a = middle
         a = 0.5 * (a + b)
         if ends == 0:
-            # Above by a few times the error of the bisection: whether slip of sign - is left.
+            # above it by a few times the error of the bisection: whether slip of sign - remains
             beyond = b + 2e-3 * (high - low)
             _, minus, edge, c = rear_slip(row, contact, c, slope, mu, beyond, out)
             if not minus or edge < 0.0:

@@ -1,12 +1,12 @@
-"""The law of covers of finite thickness: what it has besides its rows.
+"""The law of covers of finite thickness: its parts besides the rows of every law.
 
-``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0,
-and numba compiles nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE`
-numbers, the limits of fast rolling and which body has a layer, and then for each row of the law
-three pairs of functions of u = kappa |V| (:mod:`.simd`).  The limits hold beyond the last row of
-the law.  Of the functions below the first pair has the sums over both bodies, f = f_b + f_c and
-g = g_b + g_c, the second pair f_c and g_c, which are read only where each body has a layer, the
-third lam_Q and epsilon_Q.
+``cover_rows`` is None for half-spaces.  Functions that are passed None return the values of
+half-spaces, which are arguments or constants, and numba compiles no code of covers for them.  For a
+cover ``cover_rows`` holds a head of :data:`COVER_FRONT_SIZE` numbers, the limits of fast rolling
+and which body has a layer, and then for each row of the law three pairs of functions of u = kappa
+|V| (:mod:`.simd`).  The limits hold beyond the last row of the law.  The functions are explained
+below: the first pair is the sums over both bodies, f = f_b + f_c and g = g_b + g_c; the second pair
+is f_c and g_c, which are read only where each body has a layer; the third is lam_Q and epsilon_Q.
 
 Letters: kappa = R/l0, mu the coefficient of friction; Q the traction, |Q| <= mu; L = 2 kappa
 delta_star/mu with the critical creepage delta_star; lam, length of the contact divided by l0, and
@@ -103,16 +103,21 @@ class FreeCreep(NamedTuple):
 
 @inline_kernel
 def fast_value(index, x, half_space, cover_rows):
-    """Return a function beyond the last row of the law, where the fast limit holds: lam or eta/F.
+    """Return lam or eta/F at a speed beyond the last row of the law, by its expansion for fast
+    rolling.
 
-    index : int, index in the head of its limit: LAM_LIMIT or ETA_OVER_F_LIMIT.
-    x : float, u of lam, v = 1/F(eta), which may be infinite, of eta/F; dimensionless, > 0; read of
-        a cover alone.
-    half_space : float, the function of a half-space, dimensionless, which is the result if
+    For a cover the expansion is limit + coefficient/x, with both numbers from the head of
+    ``cover_rows``; for half-spaces the caller has evaluated it.
+
+    index : int, index in ``cover_rows`` of the limit: LAM_LIMIT or ETA_OVER_F_LIMIT; the
+        coefficient is the number after it.
+    x : float, > 0, dimensionless; for lam: u = kappa |V|; for eta/F: v = 1/F(eta), which may be
+        infinite.  It is not read for half-spaces.
+    half_space : float, lam or eta/F of half-spaces, dimensionless, which is the result if
         ``cover_rows`` is None; else not read.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
         half-spaces.
-    Returns a float, dimensionless; of a cover the limit and a term in 1/x.
+    Returns a float, dimensionless.
     """
     if cover_rows is None:
         return half_space
@@ -121,17 +126,23 @@ def fast_value(index, x, half_space, cover_rows):
 
 @inline_kernel
 def fast_quotient(index, u, half_space, cover_rows):
-    """Return a function that vanishes in the fast limit, beyond the last row of the law: epsilon,
-    or M/V divided by z without the term alpha z W/8 of :func:`.law_functions._fast_terms`.
+    """Return epsilon, or the moment term M/(V z), at a speed beyond the last row of the law.
 
-    index : int, index in the head of its product with u: EPSILON_LIMIT or MOMENT_LIMIT.
-    u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
-    half_space : float, the function of a half-space, dimensionless, which is the result if
+    For half-spaces the result is ``half_space``, for a cover a coefficient of the head divided by
+    u.  M is the moment without traction, and z = L/(2 u) with L in its limit for u -> infinity.  In
+    this limit L of half-spaces is lam, since epsilon -> 0; L of a cover is not.  The moment term of
+    half-spaces is without the term alpha z W/8 of :func:`.law_functions._fast_terms`, which the
+    caller adds; for covers that term is 0.
+
+    index : int, index in ``cover_rows`` of the limit of (value times u): EPSILON_LIMIT or
+        MOMENT_LIMIT.
+    u : float, kappa |V|, dimensionless, > 0; not read for half-spaces.
+    half_space : float, the value for half-spaces, dimensionless, which is the result if
         ``cover_rows`` is None; else not read.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
         half-spaces.
-    Returns a float, dimensionless, which -> 0 for u -> infinity: of a cover as 1/u, of half-spaces
-    as (ln u)/u.
+    Returns a float, dimensionless, which tends to 0 for u -> infinity: for a cover as 1/u, for
+    half-spaces as (ln u)/u.
     """
     if cover_rows is None:
         return half_space
@@ -139,7 +150,9 @@ def fast_quotient(index, u, half_space, cover_rows):
 
 
 class OverSpeed(NamedTuple):
-    """A function of u = kappa |V| at one speed, with two derivatives over u, dimensionless."""
+    """Value of a function of u = kappa |V| at one speed, with its first and second derivative with
+    respect to u, dimensionless.
+    """
 
     value: float
     slope: float
@@ -147,7 +160,7 @@ class OverSpeed(NamedTuple):
 
 
 class PairOverSpeed(NamedTuple):
-    """Two functions of u = kappa |V| at one speed."""
+    """Values of two functions of u = kappa |V| at one speed, with their derivatives."""
 
     first: OverSpeed
     second: OverSpeed
@@ -155,7 +168,8 @@ class PairOverSpeed(NamedTuple):
 
 @inline_kernel
 def _pair_at(offset, position, cover_rows):
-    """Return two functions of a cover at one speed, as :class:`PairOverSpeed`.
+    """Return the values of two functions of a cover at one speed, with their derivatives, as
+    :class:`PairOverSpeed`.
 
     offset : int, offset of the pair in a row: TOTAL, CYLINDER or TILT.
     position : :class:`.law_functions.RowPosition` of u in the rows of the law, not beyond the last.
@@ -176,11 +190,11 @@ def _pair_at(offset, position, cover_rows):
 
 @inline_kernel
 def _limit_at(index, u, cover_rows):
-    """Return a function beyond the last row of the law, a limit and a term in 1/u, as
-    :class:`OverSpeed`.
+    """Return the value limit + coefficient/u of a function beyond the last row of the law, with its
+    derivatives, as :class:`OverSpeed`.
 
-    index : int, index in the head of the limit for u -> infinity; the coefficient of 1/u follows.
-    u : float, kappa |V|, dimensionless, > 0; of a function of v it is v.
+    index : int, index in ``cover_rows`` of the limit for u -> infinity; the coefficient follows it.
+    u : float, kappa |V|, dimensionless, > 0; for eta/F it is v = 1/F(eta), which may be infinite.
     cover_rows : vector of the numbers that only a cover has, as in the module; not None.
     """
     change = cover_rows[index + 1] / u
@@ -217,12 +231,13 @@ def _relative_excess(total, mu, L, dL, ddL):
 
 @inline_kernel
 def asymmetry_at(pairs, mu, L, dL, ddL, cover_rows):
-    """Return the asymmetry c of the onsets of full slip, as :class:`OverSpeed`; 0 of half-spaces.
+    """Return the asymmetry c of the onsets of full slip, as :class:`OverSpeed`; for half-spaces it
+    is 0.
 
     pairs : :class:`Pairs` at that speed, of which ``total`` is read.
     mu : float, coefficient of friction, > 0.
     L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u, dimensionless; with
-        dL = ddL = 0 the value alone has a meaning.
+        dL = ddL = 0 only the value of the result has a meaning.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
     half-spaces.
     """
@@ -255,12 +270,12 @@ class Pairs(NamedTuple):
 
 @inline_kernel
 def pairs_at(position, u, cover_rows):
-    """Return the :class:`Pairs` of a cover at one speed; zeros of half-spaces.
+    """Return the :class:`Pairs` of a cover at one speed; for half-spaces all its numbers are 0.
 
     position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    u : float, kappa |V|, dimensionless, >= 0; read only beyond the last row.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
-    half-spaces.
+        half-spaces.
     """
     if cover_rows is None:
         zero = OverSpeed(0.0, 0.0, 0.0)
@@ -281,7 +296,7 @@ def pairs_at(position, u, cover_rows):
     else:
         total = _pair_at(TOTAL, position, cover_rows)
         cylinder = _pair_at(CYLINDER, position, cover_rows) if part < -0.5 else total
-    if part > -0.5:  # One body alone has a layer: all is the cylinder's, or nothing.
+    if part > -0.5:  # Only one body has a layer: f_c and g_c are f and g, or 0.
         zero = OverSpeed(0.0, 0.0, 0.0)
         weight = 1.0 if part > 0.5 else 0.0
         cylinder = PairOverSpeed(
@@ -292,8 +307,9 @@ def pairs_at(position, u, cover_rows):
 
 @inline_kernel
 def reduced_creep(creep, asymmetry):
-    """Return d, of which d + c d^2 is a creep: the inverse of :func:`creep_of`, but linear beyond
-    full slip.
+    """Return d for a given creep d + c d^2; in full slip return the creep less c instead.
+
+    In partial slip it is the inverse of :func:`creep_of`, whose continuation has another slope.
 
     creep : float, (delta - delta_0)/delta_star, dimensionless, which may be infinite or NaN.
     asymmetry : float, c, |c| < 1/2.
@@ -312,8 +328,9 @@ class CreepCurve(NamedTuple):
     """The creep (delta - delta_0)/delta_star over d, dimensionless, with a linear continuation
     beyond |d| = 1.
 
-    value, slope, curvature : d + c d^2 and its derivatives in d.
-    bend : its derivative in c; bend_slope : the derivative of that in d.
+    value, slope, curvature : d + c d^2 and its derivatives with respect to d.
+    bend : derivative of d + c d^2 with respect to c; bend_slope : derivative of ``bend`` with
+        respect to d.
     """
 
     value: float
@@ -326,14 +343,14 @@ class CreepCurve(NamedTuple):
 @inline_kernel
 def creep_of(d, asymmetry, cover_rows):
     """Return the creep d + c d^2 of a cover, that is (delta - delta_0)/delta_star, and its
-    derivatives; of half-spaces it is d.
+    derivatives; the creep of half-spaces is d.
 
     d : float, of either sign, dimensionless, the creepage of half-spaces divided by their
         delta_star; beyond |d| = 1 the parabola is continued by its tangent.
     asymmetry : float, c; not read for half-spaces.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
         half-spaces.
-    Returns a :class:`CreepCurve`; of half-spaces with the value d, the slope 1 and zeros.
+    Returns a :class:`CreepCurve`; for half-spaces its value is d, its slope 1 and the rest 0.
     """
     if cover_rows is None:
         return CreepCurve(d, 1.0, 0.0, 0.0, 0.0)
@@ -350,15 +367,15 @@ def creep_of(d, asymmetry, cover_rows):
 
 
 class Reaction(NamedTuple):
-    """How shear acts back on the rolling moments at one speed: M of a body is that without traction
-    less
+    """How shear acts back on the rolling moments at one speed: the traction Q reduces M of a body
+    by
 
         Q (factor + excess |Q|/mu)
 
     half_space, cylinder : the factors, dimensionless, of either sign.
     half_space_excess, cylinder_excess : the excesses, dimensionless, of either sign.
     half_space_slope, cylinder_slope, half_space_excess_slope, cylinder_excess_slope : derivatives
-    of these four over u.
+        of these four with respect to u.
     """
 
     half_space: float
@@ -396,7 +413,7 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
     on_cylinder = 1.0 / (2.0 * kappa + total.first.value)
     on_cylinder_slope = -on_cylinder * on_cylinder * total.first.slope
     # g/s is r of the module: the limiter is (1 + r^4)^(-1/4), with the slope -r^3 r' (1 + r^4)^-1
-    # times itself; values alone need no slope of L, which callers then give as 0.
+    # times itself; callers that read no slopes of the result pass 0 as the slope of L.
     ratio = _relative_excess(total, mu, L, dL, 0.0)
     cube = ratio.value * ratio.value * ratio.value
     rest = 1.0 / (1.0 + cube * ratio.value)
@@ -416,12 +433,12 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
 
 
 class MomentChange(NamedTuple):
-    """What the traction changes in the rolling moments, dimensionless: to be added to those without
-    traction.
+    """Changes of the rolling moments by the traction, dimensionless; they are added to the moments
+    without traction.
 
     half_space, cylinder : the changes of M_half_space and M_cylinder.
-    half_space_dQ, cylinder_dQ : their derivatives in Q at fixed speed.
-    half_space_du, cylinder_du : their derivatives over u = kappa |V| at fixed Q.
+    half_space_dQ, cylinder_dQ : their derivatives with respect to Q at fixed speed.
+    half_space_du, cylinder_du : their derivatives with respect to u = kappa |V| at fixed Q.
     """
 
     half_space: float
@@ -434,7 +451,7 @@ class MomentChange(NamedTuple):
 
 @inline_kernel
 def moment_change(Q, mu, reaction):
-    """Return what the traction changes in the rolling moments, as :class:`MomentChange`.
+    """Return the changes of the rolling moments by the traction, as :class:`MomentChange`.
 
     Q : float, traction, dimensionless, |Q| <= mu.
     mu : float, coefficient of friction, > 0.
@@ -453,14 +470,14 @@ def moment_change(Q, mu, reaction):
 
 @inline_kernel
 def length_change(Q, position, u, cover_rows):
-    """Return what the traction changes in length and shift of the contact, to first order.
+    """Return the changes of length and shift of the contact by the traction, to first order.
 
     Q : float, traction in the direction of V, dimensionless, |Q| <= mu.
     position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    u : float, kappa |V|, dimensionless, >= 0; read only beyond the last row.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
-    half-spaces.
-    Returns (change of lam, change of epsilon), floats, dimensionless; 0.0 each of half-spaces.
+        half-spaces.
+    Returns (change of lam, change of epsilon), floats, dimensionless; for half-spaces both are 0.0.
     """
     if cover_rows is None:
         return 0.0, 0.0
@@ -475,17 +492,19 @@ def length_change(Q, position, u, cover_rows):
 
 @inline_kernel
 def slopes_of_cover(over_u, over_D, D, functions, pairs, state, cover_rows):
-    """Return the slopes of |Q|/mu at fixed creepage less that of free rolling, from those at fixed
-    D.
+    """Return the derivatives of |Q|/mu with the variables u and creepage less that of free rolling,
+    from those with the variables u and D.
 
-    over_u, over_D : floats, slopes over u at fixed D and over D at fixed u, dimensionless.
+    over_u, over_D : floats, derivatives with respect to u at fixed D and to D at fixed u,
+        dimensionless.
     D : float, 2 kappa |d| delta_star/mu with the sign of the traction, finite.
     functions : :class:`.law_functions.LengthAndMoment` at the speed, of which L and dL are read.
     pairs : :class:`Pairs` at the speed, of which ``total`` is read.
     state : :class:`.law_record.State`, of which mu and the sign of V are read.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None, for
-        half-spaces, leaves both as they are.
-    Returns (slope over u, slope over 2 kappa |delta - delta_0|/mu), floats.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces: then ``over_u`` and ``over_D`` are returned.
+    Returns (derivative with respect to u, derivative with respect to 2 kappa |delta - delta_0|/mu),
+    floats, each with the other variable fixed.
     """
     if cover_rows is None:
         return over_u, over_D
@@ -501,8 +520,8 @@ def slopes_of_cover(over_u, over_D, D, functions, pairs, state, cover_rows):
 
 @inline_kernel
 def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
-    """Return what the creepage without creep force adds to the kinematics of partial slip at one
-    speed.
+    """Return the parts that the creepage without creep force, delta_0, adds to the kinematics of
+    partial slip at one speed.
 
     pairs : :class:`Pairs` at that speed, of which f of ``total``, with its derivatives, is read.
     u : float, kappa |V|, dimensionless, >= 0.

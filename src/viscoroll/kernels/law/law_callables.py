@@ -1,14 +1,15 @@
 """The law of one scene as a function of C and of jitted code.
 
 The function of C, ``int law(double V, double omega, double out[10], void *scene)``, is compiled
-once; ``scene`` is its user data, a :data:`SCENE`.  It writes Q, M, and the parts of M in half-space
-and cylinder into ``out``; then, where the scene asks for slopes, dQ/dV at fixed omega, dQ/domega
-and the slopes of the parts over V and over omega.  It returns 0, or another number with NaN in
-``out``.  It writes nothing else: any number of threads may call it.
+once; ``scene`` is its user data, a :data:`SCENE`.  It writes into ``out`` Q, M and the parts of M
+that half-space and cylinder take; then, if the scene requests slopes, dQ/dV at fixed omega,
+dQ/domega at fixed V and the derivatives of the parts of M with respect to V and to omega.  It
+returns 0, or another number with NaN in ``out``.  It writes nothing else: any number of threads may
+call it.
 
-For jitted code a law is a value that is called: the address of the user data of its C function.
-All such laws have one numba type, so that a user's function that is given a law is compiled once
-for all of them.  The functions with a decorator of numba's are called by numba when it compiles
+In jitted code a law is a value that can be called: the address of the user data of its C function.
+All such laws have one numba type, so that a user's function with a law as an argument is compiled
+once for all of them.  The functions with a decorator of numba are called by numba when it compiles
 such a function.
 """
 
@@ -45,14 +46,15 @@ from .traction_functions import (
 
 # --- The law of one scene as a C function ---
 
-#: Largest kappa |V|: beyond it zeta is 0 in doubles, or nearly, and the status is not 0.
+#: Largest kappa |V|: above it zeta is 0 in doubles, or nearly 0, and the status is not 0.
 MAX_U = 1e300
 #: Numbers that the function writes.
 RESULTS = 10
-#: User data.  function: address of the C function.  slopes: whether slopes are asked for.  unlike:
-#: whether the bodies differ.  rows, marks: addresses of the arrays of the law.  row_count: rows
-#: with the head.  cover_rows: address of the numbers that only a cover has.  kappa, mu: of the
-#: scene.  V, omega, Q, M: 1 of each in the units of the caller.
+#: User data.  function: address of the C function.  slopes: whether slopes are requested.  unlike:
+#: whether the bodies differ.  rows, marks: addresses of the arrays of the law.  row_count: number
+#: of rows, with the head counted as one.  cover_rows: address of the numbers that only a cover has.
+#: kappa, mu: those of the scene.  V, omega, Q, M: the dimensionless value 1 of each in the units of
+#: the caller.
 SCENE = record_type(
     "function slopes unlike rows marks row_count cover_rows", "kappa mu V omega Q M"
 )
@@ -122,9 +124,10 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     Returns the status, an int: 0; or 1, and all results are NaN, if the dimensionless V or omega is
     not finite or kappa |V| exceeds MAX_U.
 
-    If ``scene.unlike`` is 0, each body has half of M and of its slope.  At V = 0 M is 0 but for
-    that by traction on a cover; there omega other than 0 is full slip, with the slopes of Q 0.  At
-    V = omega = 0 dQ/domega and dQ/dV are infinite, but 0 in full slip (a cover).
+    If ``scene.unlike`` is 0, each body takes half of M and of its slope.  At V = 0 M is 0, except
+    for the part that traction causes on a cover; full slip holds there for every omega other than
+    0, and the slopes of Q are 0.  At V = omega = 0 dQ/domega and dQ/dV are infinite, but 0 in full
+    slip (a cover).
     """
     out = carray(pointer, RESULTS)
     rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)
@@ -146,17 +149,17 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
-    pairs = pairs_at(position, u, cover_rows)  # zeros of half-spaces, as what follows from them
+    pairs = pairs_at(position, u, cover_rows)  # for half-spaces these and delta_0, c are 0
     free_creep = pairs.total.first.value
     c = asymmetry_at(pairs, state.mu, functions.L, 0.0, 0.0, cover_rows).value
     D = signed_creep(functions.L, free_creep, c, state, cover_rows)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
-    # What the traction changes in the moments: nothing of half-spaces, where it is -0.0, which
-    # changes no bit of a sum.
+    # Changes of the moments by the traction.  For half-spaces they are -0.0, which changes no bit
+    # of a sum.
     change = traction_on_moments(pairs, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
-    # like bodies: half of M and of its slope each; M of half-spaces does not depend on omega
+    # like bodies: each takes half of M and of its slope; M of half-spaces does not depend on omega
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um
     out[8] = out[9] = 0.0
@@ -164,8 +167,8 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         half_space, cylinder, out[6], out[7] = body_moments(position, u, law)
         out[2] = factor * half_space + change.half_space
         out[3] = factor * cylinder + change.cylinder
-    # Slopes in the units of the caller: those of a load over V or omega, times the unit of the load
-    # over that of V or omega.  ``out[0]`` is still dimensionless.
+    # Slopes in the units of the caller: a dimensionless slope is multiplied by the unit of the load
+    # and divided by that of V or omega.  ``out[0]`` is still dimensionless.
     if scene.slopes:
         out[4], _, out[5] = Q_slopes(u, functions, pairs, D, state, law)
         if cover_rows is not None:
@@ -177,7 +180,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         out[5] = out[5] * scene.Q / scene.omega
         for n in range(6, 8):
             out[n] = out[n] * scene.M / scene.V
-    # Loads in the units of the caller; the slopes are already.
+    # Loads in the units of the caller; the slopes are already in these units.
     out[0] *= scene.Q
     for n in range(1, 4):
         out[n] *= scene.M
@@ -217,8 +220,9 @@ def pack_records(
 
     function : the kernel (V, omega, pointer to results, pointer to a record) -> status, numba's
         dispatcher, which is compiled here if it is not yet.
-    record : numpy dtype of the record: address of the C function, valid in this process, whether
-        slopes are asked for, the fields of ``arrays``, kappa, mu, and 1 of V, omega, Q and M.
+    record : numpy dtype of the record: address of the C function, valid in this process; whether
+        slopes are requested; the fields of ``arrays``; kappa, mu; and V, omega, Q and M of
+        ``scale``.
     arrays : addresses and sizes of arrays, ints.
     kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
     scale : as of :func:`pack_scenes`.
@@ -253,7 +257,7 @@ _POINTER = _DOUBLE.as_pointer()
 _FUNCTION = ir.FunctionType(ir.IntType(32), [_DOUBLE, _DOUBLE, _POINTER, _POINTER])
 #: Signature of a law in jitted code.
 _SIGNATURE = inspect.signature(lambda V, omega: None)
-#: Laws that are constants of somebody's machine code, which nothing else keeps alive.
+#: Laws that are constants of compiled functions: this list keeps them alive.
 _constants: list[Any] = []
 
 
@@ -266,14 +270,16 @@ class LawType(types.Callable):
         super().__init__("viscoroll.law")
 
     def get_call_type(self, context, args, kws):
-        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real
-        numbers.
+        """Return the signature that numba is to use for a call law(V, omega) with arguments of the
+        given types.
 
         context : numba's typing context, not used.
-        args, kws : tuple and dict of numba's types of the positional and of the named arguments; a
-            type of integers, floats or literal integers is allowed, and converted to double.
-        Returns the signature, (double, double) -> named tuple of RESULTS doubles; None for
-        arguments of another number, name or type, which numba reports as an error of type.
+        args, kws : tuple and dict of numba's types of the positional and of the named arguments;
+            types of integers and floats are allowed, and literal integers: they are converted to
+            double.
+        Returns the signature (double, double) -> :class:`LoadsAndSlopes` of RESULTS doubles; None
+        if the number, the names or the types of the arguments are wrong: numba then raises
+        numba.core.errors.TypingError.
         """
         try:
             kinds = _SIGNATURE.bind(*args, **kws).args
@@ -284,13 +290,15 @@ class LawType(types.Callable):
         ):
             return None
         returned = types.NamedUniTuple(types.float64, RESULTS, LoadsAndSlopes)
+        # recvr: the law itself, which numba passes to _lower_call as the first argument; pysig: the
+        # names of the arguments, by which numba assigns named ones
         return signature(returned, types.float64, types.float64, recvr=self).replace(
             pysig=_SIGNATURE
         )
 
     def get_call_signatures(self):
-        """Return the list of signatures that numba names in messages of errors, one, (double,
-        double) -> double, and False, as there are no type parameters.
+        """Return the signatures that numba names in its error messages, a list with (double,
+        double) -> double alone, and False, since there are no type parameters.
         """
         return [signature(types.float64, types.float64, types.float64)], False
 
@@ -310,15 +318,15 @@ class Jitted:
 
     Parameters
     ----------
-    scenes : two records of user data (:func:`pack_scenes`), without slopes and with,
-        whose first field is the address of the C function.
+    scenes : two records of user data (:func:`pack_scenes`), without slopes and with slopes, whose
+        first field is the address of the C function.
     owner : any object that owns the memory to which addresses in ``scenes`` point; it is kept.
 
     Attributes
     ----------
-    plain, address : int, addresses of the user data without slopes and with.
-    function : the C function for calls from Python, with the GIL: to release it takes longer than
-        the law.
+    plain, address : int, addresses of the user data without slopes and with slopes.
+    function : the C function for calls from Python, which keeps the GIL: to release the GIL would
+        take longer than to evaluate the law.
     function_address : int, its address.
     """
 
@@ -327,8 +335,8 @@ class Jitted:
     def __init__(self, scenes: NDArray[Any], owner):
         self._scenes = scenes
         self._owner = owner
-        # record 0 is without slopes, record 1 with them; both have the same C function.  Its
-        # pointers are void ones here, as ``out`` and an address are passed.
+        # record 0 is without slopes, record 1 with slopes; both have the same C function.  Its
+        # pointers are declared as void pointers, since ``out`` and an address are passed.
         self.plain, self.address = (int(scenes[n:].ctypes.data) for n in (0, 1))
         self.function_address = int(scenes["function"][0])
         self.function = ctypes.PYFUNCTYPE(*_C_TYPES[:3], ctypes.c_void_p, ctypes.c_void_p)(

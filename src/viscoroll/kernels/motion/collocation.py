@@ -88,8 +88,8 @@ INTEGRAL_MATRIX = _divide_by_linear(_divide_by_linear(_INTEGRALS))[:-1].ravel("F
 _IDENTITY = np.eye(ROW_LENGTH).ravel()
 #: Matrix of 1 off the diagonal and 0 on it, column by column.
 _OFF_DIAGONAL = 1.0 - _IDENTITY
-#: Added to a product it changes no bit of it, nor its sign: fma4(a, b, this) is the product a b of
-#: columns, for which LLVM makes a multiplication.
+#: Added to a product, it changes no bit of the product, nor its sign: fma4(a, b, this) is the
+#: product a b of columns, for which LLVM makes a multiplication.
 _NOTHING = -0.0
 #: (array, start) -> a row, or a column of a matrix, as two vectors.
 _load_column = make_load(ROW_LENGTH // LANES)
@@ -106,7 +106,8 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     target: int, index in ``result`` from which the product is written.
     result: array or pointer, ROW_LENGTH numbers of which are written; it may be ``values``, as all
     are read before.  A NaN or inf in the row makes the whole product NaN or inf, even where the
-    matrix is 0.  Returns nothing.
+    matrix is 0.
+    Returns nothing.
     """
     # two vectors, rows 0 ... 3 of the product and rows 4 ... 7: a column times a number each
     product = broadcast(0.0), broadcast(0.0)
@@ -129,7 +130,8 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     is not read.
     nodes: Workspace.nodes.
     matrix: pointer to ROW_LENGTH^2 numbers, of which columns 1 ... N are written; column 0 keeps
-    its values, 0 from the start of the motion.  Returns nothing.
+    its values, 0 from the start of the motion.
+    Returns nothing.
     """
     # row 0 of DIFFERENTIATION and of columns 1 ... N of the identity is 0, so that the entry of
     # node 0 becomes 0
@@ -152,7 +154,8 @@ def _eliminate(i, matrix):
     i: int, 1 ... N, number of the step and index of the row and column of its pivot; row and column
     of node 0 are left out.
     matrix: pointer to ROW_LENGTH^2 numbers, column by column; columns 1 ... N are changed, their
-    entries of node 0 stay 0.  A pivot of 0 leaves inf and NaN.  Returns nothing.
+    entries of node 0 stay 0.  A pivot of 0 leaves inf and NaN.
+    Returns nothing.
     """
     column = ROW_LENGTH * i
     # With element a_rk in row r and column k, the new column i is a_ri/a_ii, but 1/a_ii at r = i.
@@ -180,7 +183,8 @@ def invert_matrix(matrix):
     matrix, with the same effect.
 
     matrix: pointer to ROW_LENGTH^2 numbers, column by column, as :func:`assemble_newton_matrix`
-    writes them; overwritten by the inverse.  Returns nothing.
+    writes them; overwritten by the inverse.
+    Returns nothing.
     """
     for i in range(1, ROW_LENGTH):
         _eliminate(i, matrix)
@@ -188,8 +192,8 @@ def invert_matrix(matrix):
 
 @inline_kernel
 def invert_two_matrices(first, second):
-    """Invert two Newton matrices in place, step by step in turn: the processor works on one while
-    the other waits.
+    """Invert two Newton matrices in place, with the steps of both in alternation: the processor
+    works on one matrix while the other waits.
 
     first, second: pointers to ROW_LENGTH^2 numbers each, column by column, overwritten as by
     :func:`invert_matrix`.
@@ -214,7 +218,8 @@ def fit_dense_output(row, target, nodes):
     read.
     target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in
     the unit of the row, and a 0.
-    nodes: Workspace.nodes.  Returns nothing.
+    nodes: Workspace.nodes.
+    Returns nothing.
     """
     multiply_matrix(_DENSE_MATRIX, row, nodes[row], nodes, target, nodes)
 
@@ -228,7 +233,7 @@ def evaluate_dense_output(v, nodes, row):
     itself as v -> 0.
 
     v: float, position on the step, 0 at its left end, where the result is 0, and 2 at its right
-    end; outside the polynomial is extrapolated.
+    end; outside of the step the polynomial is extrapolated.
     nodes: Workspace.nodes.
     row: int, index in ``nodes`` of the first of the ROW_LENGTH coefficients of
     :func:`fit_dense_output`.
@@ -245,7 +250,7 @@ def evaluate_dense_output(v, nodes, row):
 def row_range(row, nodes):
     """Return the smallest and the largest of the values of a row at all nodes.
 
-    Event functions are compared with their range, and V with its largest value.
+    Callers need them as the scale of an event function or of V, and for their signs.
 
     row: int, index in ``nodes`` at which the row begins.
     nodes: Workspace.nodes.
@@ -281,10 +286,11 @@ ROW_P = ROW_LENGTH * 6
 ROW_DV_DP = ROW_LENGTH * 7
 #: Row of dp/dd, 0 in full slip.
 ROW_DP_DD = ROW_LENGTH * 8
-#: Row of the derivative in p of the residual of the second unknown, with the opposite sign.
+#: Row of the derivative of the residual of the second unknown with respect to p, with the opposite
+#: sign.
 ROW_COUPLING = ROW_LENGTH * 9
-#: Row of the derivative of the slope of the second unknown in itself, per unit of tau: below 0 it
-#: relaxes.
+#: Row of the derivative of x' with respect to x, x the second unknown, per unit of tau; where it is
+#: below 0, x relaxes.
 ROW_RELAXATION = ROW_LENGTH * 10
 #: Row of the slopes of the interpolant of p in t on [-1, 1].
 ROW_P_SLOPE = ROW_LENGTH * 11
@@ -302,12 +308,14 @@ ROW_D_UPDATE = ROW_LENGTH * 16
 ROW_ONES = ROW_LENGTH * 17
 #: Row of the weights of the equation of the second unknown.
 ROW_WEIGHT = ROW_LENGTH * 18
-#: Row of the diagonal that the Newton matrix of p subtracts; dp'/dp at node 0 before a step, half
-#: the length times dp'/dp at the other nodes.
+#: Row of two quantities.  At nodes 1 ... N: half the length of the step times dp'/dp, the diagonal
+#: that is subtracted in the Newton matrix of p.  At node 0: dp'/dp without this factor, from which
+#: :func:`.asymptotics.may_be_at_equilibrium` estimates the distance from the equilibrium.
 ROW_P_DIAGONAL = ROW_LENGTH * 19
-#: Row of the diagonal that the Newton matrix of the second unknown subtracts.
+#: Row of the diagonal that is subtracted in the Newton matrix of the second unknown.
 ROW_D_DIAGONAL = ROW_LENGTH * 20
-#: Row of the derivative of p' in the second unknown, times half the length of the step.
+#: Row of the derivative of p' with respect to the second unknown, times half the length of the
+#: step.
 ROW_FEEDBACK = ROW_LENGTH * 21
 #: First of N_QUADRATURES rows of the integrands of the quadratures.
 ROW_INTEGRANDS = ROW_LENGTH * 22
@@ -321,7 +329,7 @@ V_ZERO = DELTA_ZERO + ROW_LENGTH
 OMEGA_ZERO = V_ZERO + ROW_LENGTH
 #: Event, and row of its function: both speeds fall below the rest threshold.
 BELOW_REST_SPEED = OMEGA_ZERO + ROW_LENGTH
-#: Event, and row of its function: a brake that holds omega at 0 lets go.
+#: Event, and row of its function: a brake no longer holds omega at 0.
 BRAKE_RELEASE = BELOW_REST_SPEED + ROW_LENGTH
 #: Code beside the events: the segment of the drive or the allowed number of steps ended.
 NO_EVENT = 0
@@ -441,8 +449,8 @@ def set_step_length(h, n_trials, step_state):
 def dense_state(v, nodes):
     """Return the State at a position of a step by its dense output.
 
-    v: float, position: 0 at the left end, 2 at the right end; outside the polynomials are
-    extrapolated.
+    v: float, position: 0 at the left end, 2 at the right end; outside of the step the polynomials
+    are extrapolated.
     nodes: Workspace.nodes, with the dense output of the step, and V and the second unknown at its
     node 0.
     Returns a State in the direction and with the second unknown of the regime of the step; nothing

@@ -80,9 +80,9 @@ _MAX_TRIALS = 8
 #: Error divided by its tolerance that is assigned to a step that did not end at its event: the next
 #: step is then shorter, as after any rejection.
 _ERROR_OF_FAILED_TRIAL = 10.0
-#: Position v of an event in full slip, up to which the step is solved again with an end after it:
-#: early on a step the interpolants are less accurate relative to the time so far; the onset was
-#: wrong by 7e-12 of it.
+#: Position v of an event in full slip, up to which the step is solved again with an end after the
+#: event: early on a step the interpolants are less accurate relative to the time since its left
+#: end; without this the time of the onset had a relative error of 7e-12.
 _EARLY_EVENT = 0.5
 #: Length of that step divided by the time to the event: above 1, so that the event lies on the
 #: step.
@@ -90,8 +90,9 @@ _BEYOND_EARLY_EVENT = 1.1
 #: Shortest step divided by the time so far and to come: a regime that is over at all nodes of such
 #: a step ends there.
 SHORTEST_STEP = 1e-14
-#: Fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next
-#: segment: 1 but for rounding of the time.
+#: Fraction of the time from the left end of a step to the end of its segment, beyond which a zero
+#: of a prescribed V counts as at the end of the segment and belongs to the next one: 1 but for
+#: rounding of the time.
 BEFORE_SEGMENT_END = 1.0 - 1e-13
 
 
@@ -103,20 +104,25 @@ def _start_step(state, regime, step_state, work):
     state: State, at the time reached.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with that time and its segment.
-    work: Workspace; node 0 of V, the second unknown, p, p', the weighted rate, the larger speed,
-    V', the relaxation rate and dp'/dp is written.  At V = 0 in partial slip V' is that of p' at
-    fixed d, and the relaxation rate is not finite.
+    work: Workspace; node 0 of V, the second unknown x, p, p', the weighted rate, max(|V|, |omega|),
+    V', the derivative of x' with respect to x (ROW_RELAXATION) and dp'/dp (ROW_P_DIAGONAL) is
+    written.  At V = 0 in partial slip V' is p'/(dp/dV), and the entry of ROW_RELAXATION is not
+    finite.
     Returns the Regime: at d = 0 in partial slip with sigma d' < 0 the one with the opposite sigma,
-    as d moves to that branch; else ``regime`` unchanged.
+    since d moves to that branch; else ``regime`` unchanged.
     """
     nodes = work.nodes
     nodes[ROW_V] = state.V
     nodes[ROW_OMEGA_OR_D] = state.omega_or_d
     rates = current_rates(state, regime, step_state, work)
     store_rhs(0, rates, nodes)
-    # At V = 0 d has its relaxed value and the rounding of d changes Q: V' then follows from p'.
+    # At V = 0 in partial slip d has its relaxed value and the rounding of d changes Q: V' then
+    # follows from p'.  In full slip, where V may be below 0 too, p is V: both values are the same.
     nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
+    # derivative of x' with respect to the second unknown x, for the predictor, the error estimate
+    # and the length of the first step
     nodes[ROW_RELAXATION] = rates.drate_dd / rates.weight
+    # dp'/dp, for ``may_be_at_equilibrium``; the Newton matrices do not read it at node 0
     nodes[ROW_P_DIAGONAL] = rates.dp_rate_dV / rates.dp_dV
     if (
         not regime.full_slip
@@ -134,8 +140,8 @@ def _end_at_V_zero(step, remaining, state, regime, work):
 
     At V = 0 the law has a kink, which no step may contain.  V is expected to be 0 after V/|V'| at
     the initial V', and nowhere if V does not decrease.  In partial slip V comes to 0 only against
-    the drive: nowhere too if nothing drives, and if the prescribed slopes or, where they are 0,
-    force plus torque without feedback do not act against V.  A prescribed V that comes to 0 at the
+    the drive: no zero is expected if nothing drives, or if the prescribed slopes (where they are 0,
+    force plus torque without feedback) do not act against V.  A prescribed V that comes to 0 at the
     end of the segment, or after it, needs no shorter step.
 
     step: Step, the trial step; ``tau``, ``h``, ``segment`` and ``undriven`` are read.
@@ -158,13 +164,14 @@ def _end_at_V_zero(step, remaining, state, regime, work):
     time = -state.V / V_rate
     if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
         return step, False
-    # the second says ``time <= step.h`` of the length before
+    # in the second value ``step.h`` is the length before it is shortened
     return shorten_step(step, min(time, step.h)), time <= step.h
 
 
 @inline_kernel
 def _find_crossed_event(step, remaining, regime, work):
-    """Return the event whose function falls below 0 first on a solved step, and its position.
+    """Return the event whose function is the first to fall below 0 on a solved step, and its
+    position.
 
     A prescribed V that is 0 at the end of its segment does not count: the next segment decides its
     direction.
@@ -174,11 +181,13 @@ def _find_crossed_event(step, remaining, regime, work):
     regime: Regime, that of the step; ``full_slip``, ``spin_sign`` and ``locked`` are read.
     work: Workspace, with the event functions, ROW_SPEED, Drive and rest threshold; ROW_DENSE_EVENT
     is written.
-    Returns (event, v): code of the event and its position in [0, 2]; NO_EVENT for none, and v has
-    no meaning then.
+    Returns (event, v): code of the event and its position in [0, 2]; NO_EVENT if there is none, and
+    then v has no meaning.
     """
     event, v = find_first_event(step, regime, work)
-    at_segment_end = step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END  # v = 2: the right end
+    # A step that ends with its segment has ``remaining`` itself as its length: == is exact.  v/2 is
+    # the fraction of the step, here of the time to the end of the segment.
+    at_segment_end = step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
     if event == V_ZERO and at_segment_end and work.drive.prescribed == PRESCRIBED_V:
         return NO_EVENT, v
     return event, v
@@ -196,7 +205,7 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     step: Step, the trial step; all fields are read.
     remaining: float, time in tau to the end of the segment.
     targets_V_zero: bool, whether the length was chosen to reach V = 0.
-    dense_step: Step, whose dense output is stored; h = 0: none.
+    dense_step: Step, whose dense output is stored; its h is 0 if there is none.
     regime: Regime, that of the step; all fields are read.
     work: Workspace, with node 0; nodes, event functions and dense output are written.
     Returns (event, v, Step, error, dense_step):
@@ -205,10 +214,11 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     - v: position at which the regime ends: on the step, or 2, its right end;
     - Step: the last one tried, whose solution is at the nodes;
     - error: its error divided by its tolerance (:func:`estimate_error`); the caller rejects a step
-      above 1, whatever the event.  Four cases are other than the estimate: inf where Newton's
-      iteration did not converge; at most 1 where the regime had ended before the first node of the
-      shortest step that time resolves; at least 10 where the trials were given up with NO_EVENT;
-      NaN, or the estimate itself, where they were given up for an error that is NaN or above 1e6;
+      with an error above 1, whatever the event.  In four cases it is not the estimate: inf where
+      Newton's iteration did not converge; at most 1 where the regime had ended before the first
+      node of the shortest step that time resolves; at least 10 where the trials were given up with
+      NO_EVENT; NaN, or the estimate itself, where they were given up for an error that is NaN or
+      above 1e6;
     - dense_step: the Step whose dense output is stored now: the last one whose iteration converged,
       or the one passed if none did.
     """
@@ -269,8 +279,8 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
             v *= _BEYOND_EARLY_EVENT
         if first_event == NO_EVENT:
             # An earlier trial crossed the event, or the step was aimed at V = 0, and this one ends
-            # before it: the function is extrapolated.  If it has no zero near, the step counts as
-            # one without an event, with its own error, and a later step meets the event.
+            # before the event: its function is extrapolated.  If it has no zero near, the step
+            # counts as one without an event, with its own error, and a later step meets the event.
             v = locate_zero(event, 2.0, EXTRAPOLATION_END, nodes)
             if v >= NOT_FOUND:
                 return NO_EVENT, 2.0, step, error, dense_step
@@ -294,16 +304,17 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     of the segment is one step in closed form; that is not tried where from this segment on no
     force, torque, brake or prescribed speed acts.
 
-    stick_formed: bool, whether the stick zone has just formed; it matters to the first step alone.
+    stick_formed: bool, whether the stick zone has just formed; it affects only the first step.
     state: State, at the start.
     regime: Regime, to integrate.
-    step_state: StepState, at the start; h = 0: the length of the first step is chosen here; h > 0
-    is raised to 1e-14 tau (SHORTEST_STEP) where it is shorter.
+    step_state: StepState, at the start; if its h is 0 the length of the first step is chosen here;
+    an h above 0 is raised to 1e-14 tau (SHORTEST_STEP) where it is shorter.
     work: Workspace, of the motion; nodes, Newton matrices, dense output, outputs, quadratures and
     ends of steps are written.
     Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start
-    without one.  The StepState counts the rejected steps too; its h is the length that follows from
-    the error of the last trial step, as passed if there was none, and 0 after an equilibrium.  The
+    if there was none.  The StepState counts the rejected steps too; its h is the length that
+    follows from the error of the last trial step, the h passed if there was none, and 0 after an
+    equilibrium.  The
     Regime is still the one that ends, but sigma may have changed at d = 0.  The event is its code
     (:mod:`collocation`), or
 
@@ -319,11 +330,11 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     end = segment_end(segment, work)
     h = step_state.h
     n_rejected = 0  # trial steps rejected at the present left end
-    last_h = 0.0  # length of the last accepted step; 0: none
+    last_h = 0.0  # length of the last accepted step; 0 if there is none
     last_error = 1.0  # its error divided by its tolerance
     h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
     undriven = is_undriven(segment, drive)
-    # An equilibrium V > 0 needs a drive; without one the end is the exponential decay.
+    # An equilibrium with V > 0 needs a drive; without one V decays exponentially in the end.
     constant = is_constant(segment, drive) and not is_unloaded(segment, drive)
     # Rounding error of p', up to which p' = 0 counts as an equilibrium: in full slip p' contains
     # Q = +-mu.

@@ -16,7 +16,7 @@ On a cover of finite thickness delta = delta_0(u) + k L (d + c(u) d^2): delta_0 
 and the slopes of delta_0 and c to the factors of V' and d' in the last equation
 (:mod:`.cover_law`); half-spaces are compiled without them.
 
-In partial slip a law may add N V' to M, half of it in either body: with n = gamma N, the applied
+In partial slip a law may add N V' to M, half of it in each body: with n = gamma N, the applied
 force f and torque q, the equations of bodies of one material are
 
     (1 + n/2) V' = Q - M/2 + f      j omega' = -Q - M/2 - n V'/2 + q
@@ -28,8 +28,8 @@ collocated in place of V in partial slip: p' does not depend on Q, and on d only
 = inverse_mass V k L is small: Newton's matrix splits into one of p and one of d (:mod:`step`).
 Where friction is so strong that dp/dV may vanish, and in full slip, p is V.
 
-All derivatives are exact, but that of p' in d in partial slip leaves out the feedback of omega
-(:class:`Rates`).
+All derivatives are exact, except that of p' with respect to d in partial slip, which leaves out
+the feedback of omega (:class:`Rates`).
 
 Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
@@ -75,8 +75,9 @@ class ReducedKinematics(NamedTuple):
     With S = L (d + c d^2), delta = delta_0 + k S, k = mu/(2 kappa).
 
     value : S/L.
-    width, dwidth, turn : dS/dd, and its derivatives over u and d.
-    total, total_dd : d(u S)/du divided by A, and its derivative in d.
+    width : dS/dd.
+    dwidth, turn : derivatives of dS/dd with respect to u and to d.
+    total, total_dd : d(u S)/du divided by A, and its derivative with respect to d.
     bend : d^2(u S)/du^2.
     """
 
@@ -123,25 +124,29 @@ def reduced_kinematics(d, u, L, dL, ddL, asymmetry, cover_rows):
 
 @inline_kernel
 def creep_turn(creep, rate, cover_rows):
-    """Return what d^2 in the creepage adds to the slope of V d' in d, times dS/dd, a float; -0.0 of
-    half-spaces, which a compiler leaves out of sums.
+    """Return the term -(d^2S/dd^2) V d', which the derivative of the equation of d with respect to
+    d contains on covers.
 
-    The equation of d has dS/dd V d' on its left side: its derivative in d contains d^2S/dd^2 V d'.
+    S is that of :class:`ReducedKinematics`.  The equation of d has the left side dS/dd V d', whose
+    derivative with respect to d is d^2S/dd^2 V d' + dS/dd d(V d')/dd.  Solved for d(V d')/dd, the
+    sum that is divided by dS/dd contains this term.
 
     creep : :class:`ReducedKinematics` at d, of which ``turn``, d^2S/dd^2, is read.
-    rate : float, V d', dimensionless.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    rate : float, V d', which is ``weighted_rate`` of :class:`Rates`, dimensionless.
+    cover_rows : vector of the numbers that only a cover has, as in :mod:`.cover_law`; None for
         half-spaces.
+    Returns a float, dimensionless; -0.0 for half-spaces: adding it changes nothing, so that a
+    compiler drops the addition.
     """
     return -0.0 if cover_rows is None else -creep.turn * rate
 
 
 class Rates(NamedTuple):
-    """The right-hand side at a state and its derivatives in V and the second unknown (_dd),
-    dimensionless.
+    """The right-hand side at a state and its derivatives with respect to V (_dV) and to the second
+    unknown (_dd), dimensionless.
 
-    Derivatives are partial ones: those in V at fixed omega or d, those in the second unknown at
-    fixed V.
+    Derivatives are partial ones: those with respect to V at fixed omega or d, those with respect to
+    the second unknown at fixed V.
 
     omega : angular velocity
     Q : traction, Eq. (17); signed, |Q| <= mu
@@ -150,13 +155,13 @@ class Rates(NamedTuple):
     V_rate : V'
     p : the collocated unknown; V in full slip and under strong friction
     p_rate : p'
-    weighted_rate : ``weight`` times the slope of the second unknown: V d' in partial slip, omega'
-    in full slip
+    weighted_rate : ``weight`` times the derivative of the second unknown with respect to tau: V d'
+        in partial slip, omega' in full slip
     weight : V in partial slip, 1 in full slip
     dp_dV, dp_dd : derivatives of p
     dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip without strong friction dp_rate_dd
-        is 0 but for the moments of a cover, which depend on Q: it leaves out the feedback of omega
-        through d
+        contains only the moments of a cover, which depend on Q, else it is 0: it leaves out the
+        feedback of omega, which depends on d
     drate_dV, drate_dd : derivatives of ``weighted_rate``
     dweight_dV : derivative of ``weight``: 1 in partial slip, 0 in full slip
     """
@@ -213,7 +218,7 @@ def required_forces(V, omega, rates, load, regime, j):
     V, omega: float, speeds in the direction of the regime, dimensionless.
     rates: Rates, at these speeds; Q and the moments are read.
     load: Load, the drive at the time; inverse_mass = 0 tells that V is prescribed,
-    inverse_inertia = 0 that omega is, unless the brake holds it.
+    inverse_inertia = 0 that omega is prescribed, unless the brake holds it.
     regime: Regime, at that state; ``locked`` and ``spin_sign`` are read.
     j: float, moment of inertia J/(m R^2), dimensionless, > 0.
     Returns (force, torque of the motor, torque of the brake), floats, signed, in the direction of
@@ -221,7 +226,7 @@ def required_forces(V, omega, rates, load, regime, j):
     """
     force, torque, _ = applied_forces(V, omega, load, regime)
     brake = -load.brake * regime.spin_sign
-    # each from its line of Eq. (22), with omega' = 0, or with the prescribed slope
+    # each from its line of Eq. (22), with omega' = 0, or with the prescribed V' or omega'
     if regime.locked:
         brake = rates.Q + rates.M_cylinder - torque
     elif load.inverse_inertia == 0.0:
@@ -233,13 +238,13 @@ def required_forces(V, omega, rates, load, regime, j):
 
 @inline_kernel
 def has_strong_friction(load, regime, scene):
-    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate;
-    a bool.
+    """Return whether friction is so strong that V is collocated in place of p, a bool.  V', unlike
+    p', contains Q.
 
-    With k = mu/(2 kappa) it is where k inverse_mass > 0.8 (inverse_mass + inverse_inertia), in
-    partial slip with sigma < 0: only there may dp/dV vanish.  0.8 is a fraction of the k at which
-    dp/dV of half-spaces at rest is 0 at d = -1.  The result is False in full slip and where V is
-    prescribed.
+    With k = mu/(2 kappa) the result is True where k inverse_mass > 0.8 (inverse_mass +
+    inverse_inertia), in partial slip with sigma < 0: only there may dp/dV vanish.  0.8 is a
+    fraction of the k at which dp/dV of half-spaces at rest is 0 at d = -1.  The result is False in
+    full slip and where V is prescribed.
 
     load: Load, whose ``inverse_mass`` and ``inverse_inertia`` are read.
     regime: Regime, that of the state; ``full_slip`` and ``sigma`` are read.
@@ -262,10 +267,10 @@ def partial_slip_rates(V, d, load, regime, scene):
 
     Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
     dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with what a cover adds, rate = V
-    d'; dx_dV and dx_dd: partial derivatives of x in V at fixed d, and in d at fixed V.
+    d'; dx_dV and dx_dd: partial derivatives of x with respect to V at fixed d, and to d at fixed V.
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
-    d: float, delta/delta_star; of a cover d + c d^2 = (delta - delta_0)/delta_star; dimensionless.
+    d: float, dimensionless: delta/delta_star; on a cover d + c d^2 = (delta - delta_0)/delta_star.
     load: Load, the drive at the time; all fields are read.
     regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under
     a brake.
@@ -281,13 +286,14 @@ def partial_slip_rates(V, d, load, regime, scene):
     u = scene.kappa * abs(V)
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
     functions = evaluate_moments(u, scene)
-    # L of the law; below, of a table, that of the side of d.  dL and ddL: its derivatives in u.
+    # L of the law; of a table it is replaced below by that of the side of d.  dL and ddL: its
+    # derivatives with respect to u.
     L = functions.L
     dL = functions.dL
     ddL = functions.ddL
     stick = max(1.0 - sign * d, 0.0)  # 1 - |d| on the branch of sigma; above 1 beyond d = 0
     w = stick * L
-    Q = sign * mu  # that of w = 0, at the edge and beyond, with slopes of 0
+    Q = sign * mu  # Q at w = 0, that is for sigma d >= 1, where its derivatives are 0
     dQ_dV = 0.0
     dQ_dd = 0.0
     if w > 0.0:
@@ -323,7 +329,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     domega_dd = k * V * creep.width
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
-    # Traction and moments by the rows of the law; of a law with a table that table replaces them.
+    # Traction and moments by the rows of the law, or by the table of a law that has one.
     on_rows = loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, functions, scene)
     moments = table_state(V, d, sign, scene.kappa, mu, on_rows, law.table)
     Q = moments.Q
@@ -378,7 +384,8 @@ def partial_slip_rates(V, d, load, regime, scene):
     rate = inverse_L * (inverse_k * (omega_rate - V_rate) - d_total * dVdelta_star * V_rate)
     domega_rate_dV = inverse_inertia * (dtorque_dV - dQ_dV - moments.cylinder_dV)
     domega_rate_dd = inverse_inertia * (dtorque_dd - dQ_dd - moments.cylinder_dd)
-    # Derivative in V, at fixed V' and V d', of d_total dVdelta_star V' + creep.width V d'.
+    # Derivative with respect to V, at fixed V' and V d', of d_total dVdelta_star V' + creep.width
+    # V d'.
     dL_term = du_dV * ((creep.bend + cover.bend) * V_rate + creep.dwidth * rate)
     if unlikely(has_strong_friction(load, regime, scene)):  # V is collocated in place of p.
         p = V
@@ -439,8 +446,10 @@ def full_slip_rates(V, omega, load, regime, scene):
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
-    on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)  # Q is constant
-    # Full slip is the edge d = sigma of a table, which also knows what it is at V < 0.
+    # as the rows of the law give it; Q is constant, with derivatives of 0
+    on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)
+    # Full slip is the edge d = sigma of a table; at V < 0 ``table_state`` reads the opposite edge,
+    # at |V|, and changes the signs of Q and of the moments.
     table = by_value(scene.law).table
     moments = table_state(V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, table)
     M_half_space = moments.half_space
@@ -483,8 +492,8 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
     numbers in a loop passes a copy (:mod:`.intrinsics`).
     Returns Rates, dimensionless.  In full slip p is V, the second unknown omega, the weight of its
     equation 1.  In partial slip p is the unknown proportional to V + j omega (V itself under strong
-    friction), the second unknown d, the weight V.  The derivatives in V and in the second unknown
-    are the fields dp_dV to dweight_dV of :class:`Rates`.
+    friction), the second unknown d, the weight V.  The derivatives with respect to V and to the
+    second unknown are the fields dp_dV to dweight_dV of :class:`Rates`.
     """
     if regime.full_slip:
         return full_slip_rates(V, omega_or_d, load, regime, scene)

@@ -9,8 +9,8 @@ in tau, and b = V d', the equations at the nodes are
 
     h p' - D p = 0      h b - V (D d) = 0
 
-An index V or d stands for a partial derivative, p'_V that of p'.  With c = D d - h b_V, Newton's
-updates dp of p and dd of d solve
+An index V or d stands for the partial derivative with respect to V or d: p'_V is that of p'.  With
+c = D d - h b_V, Newton's updates dp of p and dd of d solve
 
     (D - h diag(p'_V/p_V)) dp = h p' - D p
     [diag(V) D - diag(h b_d + c p_d/p_V)] dd = h b - V (D d) - c dp/p_V
@@ -109,21 +109,22 @@ def predict(step, relaxation, dense_step, regime, work):
     - the stored dense output, where the step ends at most 1.5 lengths of the dense step beyond its
       right end; not if the step has the same left end and at most a thousandth of its length;
     - V linear in time and the second unknown relaxing exponentially (:func:`_predict_relaxation`),
-      in partial slip from V > 1e-200 on (``initial_slope_known``), in full slip if V or omega is
-      not 0;
+      where ``initial_slope_known`` is True (in full slip, and in partial slip for V > ZERO_SPEED)
+      and V or omega is not 0 at the left end;
     - the departure from rest (:func:`_predict_from_rest`).
 
     step: Step, the trial step; ``tau``, ``h``, ``segment`` and ``initial_slope_known`` are read.
-    relaxation: float, derivative of the slope of the second unknown in itself at the left end, per
+    relaxation: float, derivative of x' with respect to x at the left end, x the second unknown, per
     unit of tau.
     dense_step: Step, whose dense output is stored: the last accepted one, or a longer one that was
-    rejected; h = 0: none.
+    rejected; its h is 0 if there is none.
     regime: Regime, that of the step; all fields are read.
     work: Workspace, with node 0 of the step (V, the second unknown, V', the weighted rate and
     ROW_SPEED); V and the second unknown are written at nodes 1 ... N, in partial slip with V >= 0
-    and |d| <= 1.  Returns nothing.
+    and |d| <= 1.
+    Returns nothing.
     """
-    # Whether the dense output may serve: not for a step far shorter from the same left end.
+    # The dense output is not used for a step with the same left end that is far shorter.
     usable = step.tau > dense_step.tau or step.h > _SHORTER_STEP * dense_step.h
     if (
         usable
@@ -139,14 +140,13 @@ def predict(step, relaxation, dense_step, regime, work):
 
 @inline_kernel
 def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
-    """Store V and the second unknown at a node; in partial slip limited to V >= 0 and |d| <= 1.
-
-    That is the range in which the law of partial slip is defined; a prediction may leave it.
+    """Store V and the second unknown at a node; in partial slip they are limited to V >= 0 and |d|
+    <= 1, the range in which the law of partial slip is defined.  A prediction may leave it.
 
     i: int, the node, 1 ... N.
     V: float, speed of the axis, dimensionless.
     omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
-    full_slip: bool, whether the whole contact slips; True: both are stored as they are.
+    full_slip: bool, whether the whole contact slips; then both are stored without limits.
     nodes: Workspace.nodes; entry ``i`` of ROW_V and ROW_OMEGA_OR_D is written.  A NaN of either is
     stored as NaN.
     Returns nothing.
@@ -157,19 +157,21 @@ def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
 
 @kernel
 def _extrapolate(step, dense_step, regime, nodes):
-    """Store the unknowns of a step by the dense output of another one, usually extrapolated beyond
-    its right end.
+    """Predict the unknowns at nodes 1 ... N of a step by the dense output of another step, usually
+    extrapolated beyond the right end of that step.
 
-    Both are shifted by constants, so that they continue the values at node 0.
+    Both unknowns are shifted by constants, so that they continue the values at node 0.
 
-    step: Step, the one to predict; its left end lies on ``dense_step`` or at either of its ends.
+    step: Step, the one to predict; its left end lies on ``dense_step`` or at one of the ends of
+    ``dense_step``.
     dense_step: Step, whose dense output is stored; its length is above 0.
     regime: Regime, that of both steps; ``full_slip`` is read.
     nodes: Workspace.nodes, with node 0 of ``step`` and the dense output; V and the second unknown
-    are written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
+    are written at nodes 1 ... N, limited as by :func:`_store_unknowns`.
+    Returns nothing.
     """
-    # The dense output has no constant: it is counted from v = 0 of ``dense_step``.  These are the
-    # constants with which it has the values of node 0 at v_start.
+    # The dense output is 0 at v = 0 of ``dense_step``.  V0 and omega_or_d0 are the constants with
+    # which it has the values of node 0 at v_start.
     v_start = dense_position(step.tau, dense_step)
     V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
     omega_or_d0 = nodes[ROW_OMEGA_OR_D] - evaluate_dense_output(
@@ -184,15 +186,14 @@ def _extrapolate(step, dense_step, regime, nodes):
 
 @kernel
 def _predict_relaxation(step, relaxation, regime, nodes):
-    """Store the unknowns with V linear in time and the second unknown relaxing exponentially from
-    the left end on.
+    """Predict the unknowns at nodes 1 ... N: V linear in time, the second unknown relaxing
+    exponentially from its value at the left end.
 
-    Where the second unknown does not relax, ``relaxation`` times the time being above -1e-8, it is
-    linear in time too.
+    Where relaxation * time is -1e-8 or above, the second unknown is linear in time too.
 
-    step: Step, the one to predict, with V > 0 or in full slip at its left end; ``h`` is read.
-    relaxation: float, derivative of the slope of the second unknown in itself, per unit of tau;
-    below 0 it relaxes.
+    step: Step, the one to predict, with V > 0 at its left end or in full slip; ``h`` is read.
+    relaxation: float, derivative of x' with respect to x, x the second unknown, per unit of tau;
+    where it is below 0, x relaxes.
     regime: Regime, that of the step; ``full_slip`` is read.
     nodes: Workspace.nodes, with V, V', the second unknown and its weighted rate (omega' in full
     slip, V d' in partial slip) at node 0; V and the second unknown are written at nodes 1 ... N,
@@ -204,9 +205,9 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     )
     for i in range(1, N + 1):
         time = step.h * NODE_FRACTIONS[i]
-        # With x' = r + relaxation (x - x_0), x - x_0 = r (exp(relaxation time) - 1)/relaxation; a
-        # growth is not extrapolated, and a relaxation of 0 not divided by: up to 1e-8 the quotient
-        # is ``time`` to 5e-9.
+        # With x' = r + relaxation (x - x_0), x - x_0 = r (exp(relaxation time) - 1)/relaxation.
+        # Exponential growth is not extrapolated, and 0 is not a divisor: where |relaxation time| is
+        # at most 1e-8 the factor of r is ``time`` with a relative error of 5e-9.
         effective_time = (
             np.expm1(relaxation * time) / relaxation if relaxation * time < -1e-8 else time
         )
@@ -218,19 +219,20 @@ def _predict_relaxation(step, relaxation, regime, nodes):
 
 @kernel
 def _predict_from_rest(step, regime, work):
-    """Store the unknowns of a step that starts at V = 0, in full slip at V = omega = 0.
+    """Predict the unknowns at nodes 1 ... N of a step that starts at V = 0, in full slip at V =
+    omega = 0.
 
     V' changes linearly from its value at the left end, which may be 0, to that at V = 0 under the
     drive at the right end; V is its integral.  In full slip omega' does the same, evaluated at
     omega = 0.  In partial slip d changes linearly to its value at a departure under the drive at
     the right end, or stays if no departure in partial slip is possible there; V' at the right end
-    is that of p' at this d, but taken as at least 0.
+    is p'/(dp/dV) at this d, or 0 if that is below 0.
 
     step: Step, the one to predict; ``tau``, ``h`` and ``segment`` are read.
     regime: Regime, that of the step; all fields are read.
     work: Workspace, with V', the weighted rate and d at node 0; Scene and Drive are read.  V and
-    the second unknown are written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns
-    nothing.
+    the second unknown are written at nodes 1 ... N, limited as by :func:`_store_unknowns`.
+    Returns nothing.
     """
     nodes = work.nodes
     load = evaluate_load(step.tau + step.h, step.segment, regime, work)
@@ -280,7 +282,8 @@ def store_rhs(i, rates, nodes):
     i: int, the node, 0 ... N.
     rates: Rates, the right-hand side at the node; p, p_rate, weighted_rate and omega are read.
     nodes: Workspace.nodes, with V at the node; entry ``i`` of ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE
-    and ROW_SPEED is written.  Returns nothing.
+    and ROW_SPEED is written.
+    Returns nothing.
     """
     nodes[ROW_P_RATE + i] = rates.p_rate
     nodes[ROW_WEIGHTED_RATE + i] = rates.weighted_rate
@@ -294,8 +297,8 @@ def _evaluate_residuals(refactor, step, regime, work):
     N.
 
     With h half of ``step.h`` and D the differentiation matrix, the residuals are h p' - D p, and h
-    b - weight (D x) for the second unknown x with its weighted rate b.  They are in the units of p
-    and of weight times x.
+    b - weight (D x) for the second unknown x, where b is its weighted rate.  They are in the units
+    of p and of weight times x.
 
     refactor: bool, whether the derivatives that the Newton matrices consist of are stored too.
     step: Step, the trial step; ``h`` is read.
@@ -328,7 +331,8 @@ def _evaluate_residuals(refactor, step, regime, work):
         slope = nodes[ROW_D_SLOPE + i]
         nodes[ROW_D_RESIDUAL + i] = half_h * rates.weighted_rate - rates.weight * slope
         if refactor:
-            # p is the unknown of the first system: derivatives in V become those in p
+            # p is the unknown of the first system: derivatives with respect to V become those with
+            # respect to p
             dV_dp = 1.0 / rates.dp_dV
             coupling = dV_dp * (rates.dweight_dV * slope - half_h * rates.drate_dV)
             nodes[ROW_DV_DP + i] = dV_dp
@@ -351,7 +355,8 @@ def _add_feedback_to_matrix(work):
 
     work: Workspace, with S^-1 in ``d_matrix``, F in ROW_FEEDBACK and c in ROW_COUPLING; rows and
     columns 1 ... N of ``p_matrix`` are changed.  Both matrices are flat vectors by columns, element
-    (i, k) at ROW_LENGTH k + i; row and column 0 are not used.  Returns nothing.
+    (i, k) at ROW_LENGTH k + i; row and column 0 are not used.
+    Returns nothing.
     """
     for k in range(1, ROW_LENGTH):
         for i in range(1, ROW_LENGTH):
@@ -364,17 +369,18 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     """Do one Newton iteration of both collocation equations at nodes 1 ... N, and update the
     unknowns.
 
-    refactor: bool, whether to evaluate and invert the Newton matrices again; False: the stored
+    refactor: bool, whether to evaluate and invert the Newton matrices again; if not, the stored
     inverses are used, with the rows ROW_DV_DP, ROW_DP_DD, ROW_COUPLING and ROW_FEEDBACK of the
     iteration that made them.
     coupled: bool, whether p' depends on the second unknown, so that the system of p contains
     feedback.
     step: Step, the trial step; ``h`` and ``undriven`` are read.
     regime: Regime, that of the step; all fields are read.
-    work: Workspace, with V, the second unknown and the drive at all nodes, and p and the larger
-    speed at node 0.  Written at nodes 1 ... N are the unknowns ROW_V, ROW_OMEGA_OR_D and ROW_P
-    after the update; ROW_P_RESIDUAL and ROW_D_RESIDUAL, the residuals with terms of the other
-    equation; and, of the unknowns before the update, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED.
+    work: Workspace, with V, the second unknown and the drive at all nodes, and p and ROW_SPEED,
+    max(|V|, |omega|), at node 0.  Written at nodes 1 ... N are the unknowns ROW_V, ROW_OMEGA_OR_D
+    and ROW_P after the update; ROW_P_RESIDUAL and ROW_D_RESIDUAL, the residuals with terms of the
+    other equation; and, of the unknowns before the update, ROW_P_RATE, ROW_WEIGHTED_RATE and
+    ROW_SPEED.
     ROW_P_UPDATE, ROW_D_UPDATE and, before the update, ROW_P_SLOPE and ROW_D_SLOPE are written
     whole, with 0 at node 0 (NaN if the row that is multiplied has a NaN or inf).  With ``refactor``
     also ``p_matrix``, ``d_matrix`` and, at nodes 1 ... N, the derivatives before the update:
@@ -409,8 +415,8 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     for i in range(1, ROW_LENGTH):
         nodes[ROW_D_RESIDUAL + i] -= nodes[ROW_COUPLING + i] * nodes[ROW_P_UPDATE + i]
     multiply_matrix(d_matrix, ROW_D_RESIDUAL, 0.0, nodes, ROW_D_UPDATE, nodes)
-    # A NaN of an update must reach the result: max() loses it in its second argument, so change_d
-    # is the first below.
+    # A NaN of an update must reach the result: max() ignores a NaN in its second argument, so
+    # change_d is the first argument below.
     change_d = 0.0 * (nodes[ROW_P_UPDATE + N] + nodes[ROW_D_UPDATE + N])
     change_V = 0.0
     for i in range(1, ROW_LENGTH):
@@ -435,17 +441,17 @@ def solve_step(step, relaxation, dense_step, regime, work):
 
     An update counts by the largest change of V and of the second unknown, each divided by its error
     scale.  The iteration has converged when the last update times the ratio of the last two
-    updates, an estimate of the error that is left, is at most 0.016 times the tolerance of the
+    updates, an estimate of the remaining error, is at most 0.016 times the tolerance of the
     step, max(0.25 rtol, 1e-14), or at most 1e-14.  At the first iteration the ratio is taken to be
     at most 0.1, less for a small update.
 
     step: Step, the trial step; all fields are read.
-    relaxation: float, derivative of the slope of the second unknown in itself at node 0, per unit
+    relaxation: float, derivative of x' with respect to x at node 0, x the second unknown, per unit
     of tau; only the predictor reads it.
-    dense_step: Step, whose dense output is stored on entry, for the predictor; one with h = 0 if
-    none is.
+    dense_step: Step, whose dense output is stored on entry, for the predictor; its h is 0 if there
+    is none.
     regime: Regime, that of the step; all fields are read.
-    work: Workspace, with V, the second unknown, p, V', the weighted rate and the larger speed at
+    work: Workspace, with V, the second unknown, p, V', the weighted rate and max(|V|, |omega|) at
     node 0; the drive at all nodes, nodes 1 ... N of all rows of :func:`_newton_iteration` and the
     Newton matrices are written.  The rates, slopes, residuals and ROW_SPEED there are those before
     the last update, the derivatives those of the last matrices.
@@ -462,15 +468,15 @@ def solve_step(step, relaxation, dense_step, regime, work):
     predict(step, relaxation, dense_step, regime, work)
     last_change = np.inf
     refactor = True
-    # Whether p' depends on the second unknown: by strong friction, in full slip by feedback of
-    # omega on V'.
+    # whether p' depends on the second unknown: under strong friction, and in full slip with a
+    # feedback of omega on V'
     coupled = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
     if regime.full_slip:
         coupled = work.drive.gains.force_omega != 0.0
     for n in range(_MAX_ITERATIONS):
         change = _newton_iteration(refactor, coupled, step, regime, work)
         contraction = change / last_change
-        # the first ratio is not known; of a quadratic iteration it is small for a small update
+        # the first ratio is not known; in a quadratic iteration it is small for a small update
         if n == 0:
             contraction = min(
                 _FIRST_CONTRACTION, _QUADRATIC_CONTRACTION * change + _REFACTOR_CONTRACTION

@@ -3,8 +3,8 @@ motion.
 
 A table holds traction and moments as functions of u = kappa |V| and of the creep D = 2 kappa delta
 at one coefficient of friction mu.  D_0(u) is its middle creep, which divides two sides, sigma = 1
-above it and -1 below it; on either side full slip begins at an onset D_sigma(u).  The place w = (D
-- D_0)/(D_sigma - D_0) is 0 at the middle creep and 1 at the onset.
+above it and -1 below it; on either side full slip begins at an onset D_sigma(u).  The relative
+distance w = (D - D_0)/(D_sigma - D_0) is 0 at the middle creep and 1 at the onset.
 
 The second unknown of partial slip is d = sigma w: 2 kappa delta = D_0 + mu L d, where mu L = sigma
 (D_sigma - D_0) is the distance of the onset of sigma from D_0.  So D_0 stands where the creepage

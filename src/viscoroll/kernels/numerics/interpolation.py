@@ -21,14 +21,14 @@ from numpy.polynomial.legendre import leg2poly
 from numpy.polynomial.polynomial import polyder, polyfromroots, polyint, polyval
 from numpy.typing import NDArray
 
-#: Digits of the Decimals: half of them would do, were nothing lost to cancellation.
+#: Digits of the Decimals: without cancellation half of them would suffice.
 _DIGITS = 40
 #: Digits in the search for zeros, where polynomials of degree 36 lose fourteen to cancellation.
 _DIGITS_OF_SEARCH = 60
-#: Digits after the point that zeros keep: the last ones would tell how this machine computes a
-#: cosine.
+#: Digits after the point to which zeros are rounded: further digits depend on how the machine
+#: computes a cosine.
 _DIGITS_OF_ZEROS = 36
-#: Newton steps from a start good to two digits: each doubles the digits.
+#: Newton steps from a start with two correct digits: each doubles their number.
 _NEWTON_STEPS = 5
 _Floats = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ class Interpolation:
 
     Attributes
     ----------
-    exact : the nodes as they were given, a tuple of n.
+    exact : the nodes that were passed, a tuple of n.
     nodes : the nodes as doubles, (n,).
     """
 
@@ -93,18 +93,19 @@ class Interpolation:
 
     @in_40_digits
     def values(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix from values at the nodes to those at other points.
+        """Return the matrix from values at the nodes to values at other points.
 
-        points : m Decimals or integers, inside of the nodes or beyond.
+        points : m Decimals or integers, between the nodes or beyond them.
         Returns doubles, (m, n), [point, node].
         """
         return _values(self._basis, points)
 
     @in_40_digits
     def slopes(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix from values at the nodes to slopes, derivatives in x, at other points.
+        """Return the matrix from values at the nodes to slopes, derivatives with respect to x, at
+        other points.
 
-        points : m Decimals or integers, inside of the nodes or beyond.
+        points : m Decimals or integers, between the nodes or beyond them.
         Returns doubles, (m, n), [point, node].
         """
         return _values(polyder(self._basis), points)
@@ -137,8 +138,9 @@ def radau(n: int) -> list[Decimal]:
     n : number of nodes, the end included, an int > 1, by position only.
     Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
-    # P_(n-1) + P_n of Legendre vanishes at -1 and at the other nodes of the rule with that end; no
-    # start is near -1 itself.  The nodes of the rule with the end 1 are those of the mirror image.
+    # Legendre's P_(n-1) + P_n vanishes at the nodes of the rule with the end -1, and the starts are
+    # near all of them but -1 itself.  With opposite signs they are the nodes of the rule with the
+    # end 1.
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
     return sorted([Decimal(1), *(-x for x in inner)])
 
@@ -153,7 +155,7 @@ def gauss(n: int) -> tuple[_Floats, _Floats]:
     """
     legendre = leg2poly(_unit_series(n, 1))
     nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))
-    # On [-1, 1] a weight is 2/((1 - x^2) P_n'(x)^2); half of it on [0, 1].
+    # On [-1, 1] a weight is 2/((1 - x^2) P_n'(x)^2), on [0, 1] half of that.
     weights = 1 / ((1 - nodes * nodes) * polyval(nodes, polyder(legendre)) ** 2)
     return to_doubles((1 + nodes) / 2), to_doubles(weights)
 
@@ -178,8 +180,8 @@ def to_chebyshev(n: int) -> _Floats:
     n : number of nodes and terms, an int > 1, by position only.
     Returns doubles, (n, n), [term, node], the term of T_0 first.
     """
-    # At these nodes x_k the sum of f(x_k) T_m(x_k), times 2/n, is the coefficient of T_m, twice
-    # that for m = 0.
+    # At these nodes x_k the sum of f(x_k) T_m(x_k), times 2/n, is the coefficient of T_m; for m = 0
+    # it is twice the coefficient.
     x = np.array(chebyshev(n))
     terms = [1 + 0 * x, x]
     for _ in range(n - 2):
@@ -215,12 +217,14 @@ def to_doubles(values) -> _Floats:
 
 
 def _unit_series(degree: int, *last: int) -> list[Decimal]:
-    """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with
-    ``degree`` zeros.
+    """Return the coefficients of a Legendre or Chebyshev series: ``degree`` zeros, then the numbers
+    given.
 
-    degree : int, how many polynomials, from that of degree 0 on, have the coefficient 0.
-    last : integers, coefficients of the next ones.
-    Returns ``degree`` + len(last) Decimals, that of degree 0 first.
+    With the arguments (n, 1) the series is the polynomial of degree n itself.
+
+    degree : int, number of zeros, the coefficients of the polynomials of degree 0 ... degree - 1.
+    last : integers, the coefficients of the polynomials of degree ``degree`` and above.
+    Returns ``degree`` + len(last) Decimals, the coefficient of the polynomial of degree 0 first.
     """
     return [Decimal(c) for c in (*[0] * degree, *last)]
 
@@ -234,7 +238,8 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
     angles, rounded to 36 digits after the point.  It is not checked that the iteration has
     converged.
     """
-    # a cosine of this machine serves as a start alone: its last digits have no effect on the result
+    # the cosine is only a start: its last digits, which may differ from machine to machine, have no
+    # effect on the result
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)
     with localcontext(Context(prec=_DIGITS_OF_SEARCH)):
