@@ -34,18 +34,18 @@ SHORT = 8
 
 
 @lru_cache(maxsize=1)
-def kernels_digest() -> str:
-    """Hash of the syntax trees and of the coefficients of the kernels.
+def kernels_digest(kernels: Path = KERNELS) -> str:
+    """Hash of the syntax trees and of the coefficients below ``kernels``.
 
     It takes 0.3 s, as long as a first call from a full cache: what names the cache hashes the files
     as they are.
     """
     digest = hashlib.sha256()
-    for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
+    for path in sorted((*kernels.rglob("*.py"), *kernels.rglob("*.npy"))):
         content = path.read_bytes()
         if path.suffix == ".py":
             content = _plain(ast.parse(content)).encode()
-        digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + content + b"\0")
+        digest.update(path.relative_to(kernels).as_posix().encode() + b"\0" + content + b"\0")
     return digest.hexdigest()[:16]
 
 
