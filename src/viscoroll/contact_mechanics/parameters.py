@@ -530,13 +530,13 @@ def refuse_cover(scene: Parameters, why: str) -> None:
         instead = ""
         if scene._law is not None:
             law = "the table or grid given as material="
-            instead = " and materials in place of that table"
+            instead = " and the materials of the bodies in place of that table or grid"
         raise ParameterError(
             "coupled",
             True,
             "False",
-            f"the law of this roller is {law}: {why}.  It is possible with coupled=False{instead}, "
-            "which neglects how shear changes the pressure",
+            f"the law of this roller is {law}: {why}.  The call is possible as it stands with "
+            f"coupled=False{instead}; the effect of shear on the pressure is then neglected",
         )
 
 

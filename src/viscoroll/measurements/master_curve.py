@@ -88,7 +88,11 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     elif given.ndim == 0:
         given = np.full(np.shape(omega), given)
     if given.ndim != 1:
-        raise shape_error("temperature", given.shape, "one number for each point or each curve")
+        raise shape_error(
+            "temperature",
+            given.shape,
+            "a plain list of one dimension, with one number for each point or for each curve",
+        )
     flat = [check_array(name, column, above=0.0) for name, column in named.items()]
     for name, column in zip(named, flat):
         if column.shape != given.shape:
