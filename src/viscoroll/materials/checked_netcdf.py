@@ -270,9 +270,9 @@ def check_law(content: Content, path: Any) -> None:
     checksum.
 
     It checks in turn: that the attribute ``viscoroll_table`` is a key of :data:`KINDS`; that
-    ``law_schema`` is an integer equal to :data:`VERSION`; that no variable of the kind is missing;
-    that the attributes title, source and, of a material, material are texts; that the
-    :func:`checksum` of the numbers, which must be numeric, is the attribute ``sha256_of_numbers``.
+    ``law_schema`` is an integer equal to :data:`VERSION`; that the attributes title, source and,
+    except for a table over alpha, material are texts; that all variables of the kind are present
+    and numeric, and that their :func:`checksum` is the attribute ``sha256_of_numbers``.
     content: :class:`Content` of the file.
     path: path of the file, for errors.
     Returns None for a file that is as it was written.

@@ -142,8 +142,8 @@ def _fault_of(table: Any, path: Any) -> str:
         if dims != own:
             return (
                 f"variable {name!r} has the dimensions {dims}, but must have {own} in this order: "
-                "select by lists, as .isel(V=[0]), which keep dimensions, or make the grid again by "
-                "vr.tables.build"
+                "select by lists, as .isel(V=[0]), which keep dimensions, or make the grid again "
+                "by vr.tables.build"
             )
         unit = table[name].attrs.get("units")
         # a grid of a cylinder, in SI units, states its load; that of a scene has none

@@ -441,7 +441,8 @@ def place_of(D, u, speed, table):
     """
     middle = edge_at(MIDDLE, u, speed, table)
     sigma = 1.0 if D >= middle.value else -1.0
-    # ONSET + 0 is that of sigma = -1, ONSET + 1 that of 1; w and ``width`` have the sign of sigma
+    # ONSET + 0 is that of sigma = -1, ONSET + 1 that of 1; D less the middle, and ``width``, both
+    # have the sign of sigma, so that w >= 0
     onset = edge_at(ONSET + np.int64(D >= middle.value), u, speed, table)
     width = onset.value - middle.value
     w = (D - middle.value) / width

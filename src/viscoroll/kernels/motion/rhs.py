@@ -98,7 +98,7 @@ def reduced_kinematics(d, u, L, dL, ddL, asymmetry, cover_rows):
     u : float, kappa |V|, dimensionless, >= 0.
     L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u.
     asymmetry : :class:`OverSpeed` of c at u; not read for half-spaces.
-    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces.
     """
     uL_slope = L + u * dL  # A
