@@ -64,17 +64,10 @@ _HEIGHT = 0.955
 _GROUND = "0.88"
 _BODY = "0.96"
 _EDGE = "0.35"
-_ARROW = {
-    "arrowstyle": "-|>",
-    "color": "black",
-    "shrinkA": 0,
-    "shrinkB": 0,
-    "linewidth": 1.3,
-    "mutation_scale": 14,
-}
+_SPAN = {"arrowstyle": "<|-|>", "color": "black", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.8}
+_ARROW = _SPAN | {"arrowstyle": "-|>", "linewidth": 1.3, "mutation_scale": 14}
 _TEXT = {"textcoords": "offset points", "fontsize": "large"}
 _SMALL = _TEXT | {"fontsize": "small"}
-_SPAN = {"arrowstyle": "<|-|>", "color": "black", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.8}
 
 
 def geometry():

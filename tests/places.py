@@ -1,11 +1,9 @@
 """Where the repository lies, for tests in any folder."""
 
 import json
-import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PIPELINE = ROOT / "pipeline"
 DATA = ROOT / "data"
 DOCS = ROOT / "docs"
 RESULTS = DATA / "results"
@@ -14,13 +12,6 @@ RESULTS = DATA / "results"
 def kept(name):
     """Results that are committed."""
     return json.loads((RESULTS / name).read_text())
-
-
-def full_sizes(section):
-    """Those of a stage of the evidence that are not quick."""
-    found = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text())[section]
-    del found["quick"]
-    return found
 
 
 def content(folder):

@@ -132,8 +132,8 @@ GIVEN_V = (
     .replace('"same", ', "")
     .replace("0.05, ", "")
     .replace("force", "torque")
+    .replace("V0 = 0.0\n", "")
 )
-GIVEN_V = GIVEN_V.replace("V0 = 0.0\n", "")
 GIVEN_OMEGA = (
     GIVEN_V.replace("V =", "omega =").replace("omega0 =", "V0 =").replace("torque =", "force =")
 )

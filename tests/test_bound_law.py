@@ -61,7 +61,7 @@ def called(law, V, omega):
 
 def test_law_is_contact_to_the_bit(law):
     """Of arrays, of numbers, in jitted code and in C."""
-    (function, scene) = law.ctypes
+    function, scene = law.ctypes
     out = NUMBERS()
     V, omega = states(law.scene)
     state = law.scene.contact(V, omega=omega, fields=LoadsAndSlopes._fields)
@@ -82,7 +82,7 @@ def test_law_is_contact_to_the_bit(law):
 
 
 def test_what_is_no_number_is_an_error_or_nan(law):
-    (function, scene) = law.ctypes
+    function, scene = law.ctypes
     out = NUMBERS()
     for V, omega in BAD:
         with pytest.raises(vr.ParameterError):
@@ -106,7 +106,7 @@ def test_scipy_takes_the_c_function(law):
 def test_a_law_lasts_as_long_as_somebody_holds_a_part_of_it():
     scene = vr.Scene(kappa=50.0, mu=0.2, material=SERIES.slower(1.7))
     expected = scene.law()(0.3, 0.3001)
-    (function, data) = scene.law().ctypes
+    function, data = scene.law().ctypes
     jitted = scene.law().jitted
     out = NUMBERS()
     others = [scene.replace(mu=mu, material=SERIES.slower(mu)).law() for mu in (0.3, 0.4)]

@@ -3,7 +3,7 @@ elements: make prove.
 """
 
 import ctypes
-import dataclasses
+from dataclasses import replace
 from functools import partial
 
 import c_code
@@ -373,8 +373,8 @@ def test_a_thickness_in_SI_units():
     """A Material's thickness over l0 is that of the Cover; steel under it is nearly rigid; validity
     tells of it.
     """
-    thin = dataclasses.replace(THIN, prony=ONE)
-    elastic = dataclasses.replace(THIN, prony=vr.Prony.elastic())
+    thin = replace(THIN, prony=ONE)
+    elastic = replace(THIN, prony=vr.Prony.elastic())
     for material, base, on in ((elastic, STEEL, "cylinder"), (RIGID, thin, "base")):
         roller = roller_of(material, base)
         found = roller.contact(1.0, delta=0.0)
@@ -391,7 +391,7 @@ def test_a_thickness_in_SI_units():
         thick = roller.validity(1.0).thick
         assert close(thick.value, 0.5 * found.length / 0.01, tol.CONTACT)
         assert thick.holds
-    short = dataclasses.replace(vr.Material.elastic(2e6, 0.49), thickness=0.004)
+    short = replace(vr.Material.elastic(2e6, 0.49), thickness=0.004)
     solved, fast = (roller_of(RIGID, short).replace(coupled=way) for way in (None, False))
     assert solved.validity(0.0).thick.holds > fast.validity(0.0).thick.holds
     assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"

@@ -202,9 +202,7 @@ REFUSED += each(
     {
         "shapes of a Schedule = times (), values ()": lambda: vr.Schedule(0.0, 1.0),
         "material": MANY_SCENES.law,
-        "m has shape (2,): must be one number": lambda: PAPER_CYLINDER.replace(
-            m=[30.0, 40.0]
-        ).law(),
+        "m has shape (2,): must be one number": PAPER_CYLINDER.replace(m=[30.0, 40.0]).law,
         "at most": lambda: vr.tables.build(
             PAPER, np.arange(1.0, 10000.0), delta=np.arange(10000.0)
         ),

@@ -92,9 +92,6 @@ REFUSED = [
             "the table for x.nc: variable 'Q' has units = 'N': must be '1'": lambda: vr.tables.save(
                 grid().assign(Q=grid().Q.assign_attrs(units="N")), "x.nc"
             ),
-            "column 'j' of none.nc: the file does not exist": lambda: run(
-                "a preset", "j = 0.4", 'j = { file = "none.nc", column = "j" }'
-            ),
             "column 'j' of given.nc: the file has no column of this name": lambda: run(
                 "a preset", "j = 0.4", f'j = {{ file = "{netcdf(grid())}", column = "j" }}'
             ),
@@ -117,15 +114,6 @@ REFUSED = [
             ),
             "line 2: [start] V0 is missing: give a number": lambda: read_run(
                 file('preset = "paper-section-5"\n[start]\nomega0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
-            ),
-            "given.nc | law_schema = 2 (version | but viscoroll": lambda: of_grid(
-                law_file().assign_attrs(law_schema=2)
-            ),
-            "given.nc | its numbers do not match the checksum": lambda: of_grid(
-                law_file().assign_attrs(sha256_of_numbers="0" * 64)
-            ),
-            "given.nc: is damaged or was edited: | attribute material": lambda: of_grid(
-                law_file().assign_attrs(material="not TOML")
             ),
             "attribute 'material' is missing or | write the file again by vr.tables.save": lambda: [
                 netcdf(law_file(), without="material"),
@@ -165,17 +153,30 @@ REFUSED = [
             "delta has the unit deg, an angle: must be": lambda: data(
                 "V [m/s],delta [deg],Q [N/m]\n1,2,3\n", "traction"
             ),
-            "3: is not a path": [
-                lambda: vr.tables.export(grid(), 3),
-                lambda: vr.Material.from_netcdf(3),
-                lambda: vr.load_law(3),
-                lambda: PAPER.contact(V=[1.0, 2.0], delta=0.0).plot(3),
-                lambda: read_run(3),
-                lambda: vr.runs.verify(3),
-                lambda: vr.runs.open_run(3),
-                lambda: vr.datasets.copy_files(3),
-            ],
             "cannot be read": lambda: read_roller("missing.toml"),
+        },
+    ),
+    *files(
+        lambda **changed: of_grid(law_file().assign_attrs(**changed)),
+        {
+            "given.nc | law_schema = 2 (version | but viscoroll": {"law_schema": 2},
+            "given.nc | its numbers do not match the checksum": {"sha256_of_numbers": "0" * 64},
+            "given.nc: is damaged or was edited: | attribute material": {"material": "not TOML"},
+        },
+    ),
+    *files(
+        lambda call: call(3),
+        {
+            "3: is not a path": [
+                lambda path: vr.tables.export(grid(), path),
+                vr.Material.from_netcdf,
+                vr.load_law,
+                lambda path: PAPER.contact(V=[1.0, 2.0], delta=0.0).plot(path),
+                read_run,
+                vr.runs.verify,
+                vr.runs.open_run,
+                vr.datasets.copy_files,
+            ]
         },
     ),
     *files(
@@ -234,54 +235,10 @@ REFUSED = [
                 "coupled = false",
                 "",
             ),
-            "line 4: [scene] mu: unknown key 'distribtion'; did you mean 'distribution'?": (
-                "a preset",
-                'distribution = "lognorm"',
-                'distribtion = "lognorm"',
-            ),
-            "line 4 | scipy.stats | did you mean 'lognorm'?": (
-                "a preset",
-                '"lognorm"',
-                '"lognrom"',
-            ),
-            "line 4 | lognorm lacks these parameters: s": ("a preset", "s = 0.3, ", ""),
-            "an integer of more than 64 bits: write a shorter or a decimal": (
-                "a preset",
-                "j = 0.4",
-                f"j = {-(2**63) - 1}",
-            ),
-            "has the number 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
-            "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
-            "line 4 | truncate = [-0.05, 0.0]: must be where the distribution has draws": (
-                "a preset",
-                "[0.05, 0.6]",
-                "[-0.05, 0.0]",
-            ),
-            "line 10 | did you mean 'omega0'?": ("a preset", "V0.mu = 0.7", "V0.omega = 0.7"),
-            "line 14 | high = 1e+308: must be less than": (
-                "a preset",
-                "low = 0.0, high = 3e-3",
-                "low = -1e308, high = 1e308",
-            ),
-            "[heat] is given beside": (
-                "a preset",
-                "[run]",
-                "[heat]\nambient = 20.0\nconductance = 1.0\n[run]",
-            ),
             "[drive] V and omega are both given": (
                 "driven",
                 "brake = 0.01",
                 "V = 0.01\nomega = 0.01",
-            ),
-            "line 16 | is uncertain, and not only V0 and omega0": (
-                "a preset",
-                "block = 12",
-                'method = "flow"',
-            ),
-            "line 18: [run] summaries = []: must name at least one quantity": (
-                "a preset",
-                '["V", "x"]',
-                "[]",
             ),
             "file.toml: line 3: [scene.creep] J_2: draws extend from 0.3 to 0.9: sum of J = "
             "1.0999999999999999 | narrow the distribution by truncate = [low, high]": (
@@ -307,6 +264,39 @@ REFUSED = [
                 "brake = 0.01",
                 "V = 0.01",
             ),
+        },
+    ),
+    *files(
+        partial(run, "a preset"),
+        {
+            "column 'j' of none.nc: the file does not exist": (
+                "j = 0.4",
+                'j = { file = "none.nc", column = "j" }',
+            ),
+            "line 4: [scene] mu: unknown key 'distribtion'; did you mean 'distribution'?": (
+                'distribution = "lognorm"',
+                'distribtion = "lognorm"',
+            ),
+            "line 4 | scipy.stats | did you mean 'lognorm'?": ('"lognorm"', '"lognrom"'),
+            "line 4 | lognorm lacks these parameters: s": ("s = 0.3, ", ""),
+            "an integer of more than 64 bits: write a shorter or a decimal": (
+                "j = 0.4",
+                f"j = {-(2**63) - 1}",
+            ),
+            "has the number 1e400, beyond 1.8e308": ("j = 0.4", "j = 1e400"),
+            "line 4 | finite number without a unit": ("s = 0.3", 's = "0.3 %"'),
+            "line 4 | truncate = [-0.05, 0.0]: must be where the distribution has draws": (
+                "[0.05, 0.6]",
+                "[-0.05, 0.0]",
+            ),
+            "line 10 | did you mean 'omega0'?": ("V0.mu = 0.7", "V0.omega = 0.7"),
+            "line 14 | high = 1e+308: must be less than": (
+                "low = 0.0, high = 3e-3",
+                "low = -1e308, high = 1e308",
+            ),
+            "[heat] is given beside": ("[run]", "[heat]\nambient = 20.0\nconductance = 1.0\n[run]"),
+            "line 16 | is uncertain, and not only V0 and omega0": ("block = 12", 'method = "flow"'),
+            "line 18: [run] summaries = []: must name at least one quantity": ('["V", "x"]', "[]"),
         },
     ),
     *files(

@@ -1,6 +1,6 @@
 """What results say of themselves: short text, HTML, xarray, pandas, figures."""
 
-import dataclasses
+import copy
 import sys
 from functools import partial
 
@@ -72,7 +72,7 @@ def test_each_is_drawn(results):
 def test_each_is_equal_to_itself_alone(results):
     """Arrays have no single answer: a comparison of results raised, and so did their hash."""
     for result in (*results.values(), results["steady"].loss):
-        other = dataclasses.replace(result) if dataclasses.is_dataclass(result) else None
+        other = copy.copy(result)
         assert result == result
         assert result in {result}
         if not isinstance(result, vr.Material):

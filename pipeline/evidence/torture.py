@@ -82,11 +82,6 @@ def row(
     }
 
 
-def unsealed(content):
-    """A table as another program would have written it: without the seal."""
-    return content[: content.rindex(b"\n", 0, -1)]
-
-
 def flip(content, rng):
     """One bit; an empty file gets a byte."""
     changed = bytearray(content or b"\0")
@@ -243,15 +238,18 @@ def of_tables(sizes):
         content = (folder / "table.nc").read_bytes()
         found = [
             *kills(sizes["kills"], folder, rng),
-            writers(
-                "two processes save the same table at once", sizes["writers"], folder / "both.nc"
-            ),
+            writers(sizes["writers"], folder / "both.nc"),
         ]
         ways = {
             "one bit flipped": (sizes["flips"], content, flip),
             "truncated": (sizes["truncations"], content, truncate),
             "1-16 bytes of headers and B-trees replaced": (sizes["edits"], content, edit),
-            "truncated, no seal": (sizes["unsealed"], unsealed(content), truncate),
+            # as another program would have written it
+            "truncated, no seal": (
+                sizes["unsealed"],
+                content[: content.rindex(b"\n", 0, -1)],
+                truncate,
+            ),
         }
         if LAW.exists():
             ways["one bit of data/tables/rubber.nc flipped"] = (
@@ -322,7 +320,7 @@ def whole(path: Path):
     return tables.load(path)
 
 
-def writers(done: str, count: int, path: Path) -> Row:
+def writers(count: int, path: Path) -> Row:
     """Two processes save one table over and over; every load between is one of theirs, whole."""
     made = [grid(f"writer {n}") for n in range(2)]
     expected = set()
@@ -339,11 +337,11 @@ def writers(done: str, count: int, path: Path) -> Row:
             return "a writer failed"
         return "unharmed" if fingerprint(whole(path)) in expected else "damaged"
 
-    processes = [get_context("fork").Process(target=save_all, args=(table,)) for table in made]
+    processes = [_FORK.Process(target=save_all, args=(table,)) for table in made]
     for process in processes:
         process.start()
     try:
-        return trials(done, count, load)
+        return trials("two processes save the same table at once", count, load)
     finally:
         for process in processes:
             process.kill()

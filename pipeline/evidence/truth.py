@@ -355,7 +355,7 @@ def zone_of(of: Material, z) -> Zone:
         Where the precision does not tell the matrix from a singular one.
     """
     a = of.a
-    modes = range(len(of.a))
+    modes = range(len(a))
     if not a:
         return Zone(*3 * [0 * z], (0 * z, 0 * z), [], [])
     r = [ratio_r(at * z) for at in a]
@@ -387,14 +387,16 @@ def _state(alpha, kappa, mu, V, delta, near):
     lam = w * zeta if of.a else arb(1)
     epsilon = whole.g / zeta
     delta_star = mu * lam * (1 + epsilon) / (2 * kappa)
-    parts = dict(
-        zip(
-            ("M", "M_half_space", "M_cylinder"),
-            (V * each for each in (whole.m, *whole.parts)),
-            strict=True,
-        )
-    )
-    state = {"lam": lam, "zeta": zeta, "epsilon": epsilon, "delta_star": delta_star} | parts
+    half_space, cylinder = whole.parts
+    state = {
+        "lam": lam,
+        "zeta": zeta,
+        "epsilon": epsilon,
+        "delta_star": delta_star,
+        "M": V * whole.m,
+        "M_half_space": V * half_space,
+        "M_cylinder": V * cylinder,
+    }
     over = 2 * kappa * delta - mu * lam * (1 + epsilon)
     if over >= 0:
         return state | {"full_slip": True, "beta": arb(0), "Q": mu}

@@ -14,6 +14,7 @@ import pandas as pd
 import pytest
 import tolerances as tol
 import xarray as xr
+from calls import file
 from places import content
 from processes import printed
 
@@ -116,10 +117,10 @@ def test_output_that_nothing_takes(line, code, error):
     assert (done.returncode, done.stdout, done.stderr) == (code, "", error)
 
 
-def test_letters_that_a_stream_lacks_and_a_closed_one(here, monkeypatch):
+def test_letters_that_a_stream_lacks_and_a_closed_one(monkeypatch):
     """A Greek letter, a name of a file that is no UTF-8, and no standard error are no failures."""
-    (here / "m.toml").write_text('[material]\nname = "\\u03bc"\nE = 1.0\nnu = 0.5\n')
-    (here / "run.toml").write_text(UNCERTAIN)
+    file('[material]\nname = "\\u03bc"\nE = 1.0\nnu = 0.5\n', "m.toml")
+    file(UNCERTAIN, "run.toml")
     printed = io.TextIOWrapper(io.BytesIO(), "ascii")
     for name, value in (("stdout", printed), ("stderr", None), ("orig_argv", ["\udcff"])):
         monkeypatch.setattr(sys, name, value)
@@ -150,8 +151,8 @@ def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
 
 @pytest.mark.parametrize("command", ["", "tables", "material", *COMMANDS])
 @pytest.mark.long
-def test_example_of_help_runs(run, here, command):
-    (here / "run.toml").write_text(UNCERTAIN)
+def test_example_of_help_runs(run, command):
+    file(UNCERTAIN, "run.toml")
     _, *examples = run(f"{command} --help").partition("example:")[2].split("\n  viscoroll ")
     for example in examples:
         run(example)
@@ -205,9 +206,9 @@ def test_a_fit_that_misses_writes_no_file(here, capsys, misfit, words, name):
     assert "forced: the misfit of" in read_materials(here / name)["material"].measured.source
 
 
-def test_a_cylinder_of_a_file_is_in_si(run, here):
+def test_a_cylinder_of_a_file_is_in_si(run):
     """As its methods say, with the unit of every column."""
-    (here / "a.toml").write_text(ROLLER + RUBBER)
+    file(ROLLER + RUBBER, "a.toml")
     cylinder = read_roller("a.toml")
     point = "contact a.toml --V 0.5 --delta 0.01"
     assert f"M = {cylinder.contact(0.5, delta=0.01).M:.10g} N m m-1" in run(point)
@@ -257,7 +258,7 @@ ONE = "[material]\nE = 3e6\nnu = 0.5\nprony = { E = [0.3, 0.6], tau = [2e-2, 1e-
 
 
 def test_tables_law(run, here):
-    (here / "rubber.toml").write_text(ONE + "[base]\nE = 2e11\nnu = 0.3\n")
+    file(ONE + "[base]\nE = 2e11\nnu = 0.3\n", "rubber.toml")
     for name in ("pair.nc", "pair.h", "pair.json"):
         assert run(f"tables law rubber.toml -o {name}").startswith(f"{name}: ")
     law = vr.load_law("pair.nc")
@@ -343,15 +344,15 @@ def files(here, law):
     shutil.copy(law, here / "law.nc")
     (here / "half.nc").write_bytes(law.read_bytes()[:1000])
     shutil.copy(DATA, here)
-    for name, text in (
-        ("file", "as it was"),
-        ("run.toml", UNCERTAIN),
-        ("rubber.toml", ONE),
-        ("rpm.csv", "f [Schlag/min],E' [MPa],E'' [MPa]\n60,1.2,0.4\n120,1.5,0.5\n240,1.8,0.4\n"),
-        ("tread.toml", RUBBER),
-        ("warm.toml", RUBBER + "temperature = 30.0\n"),
-    ):
-        (here / name).write_text(text)
+    for name, text in {
+        "file": "as it was",
+        "run.toml": UNCERTAIN,
+        "rubber.toml": ONE,
+        "rpm.csv": "f [Schlag/min],E' [MPa],E'' [MPa]\n60,1.2,0.4\n120,1.5,0.5\n240,1.8,0.4\n",
+        "tread.toml": RUBBER,
+        "warm.toml": RUBBER + "temperature = 30.0\n",
+    }.items():
+        file(text, name)
 
 
 def assert_said(tell, table):

@@ -18,12 +18,16 @@ from pipeline.evidence.measure import covers
 _, ONE, THREE = covers.MATERIALS.values()
 
 
+def losses_of(s):
+    return np.stack([s.loss.slip, s.loss.half_space, s.loss.cylinder])
+
+
 @pytest.mark.parametrize("index", [0, 7, *long(15, 20)])
 def test_no_state_makes_energy(index):
     _, scene, _ = covers.scenes()[index]
     V = np.logspace(-4.0, 1.0, 6)[:, None]
     s = scene.steady(V=V, torque=scene.mu * np.linspace(-0.99, 0.99, 23))
-    parts = np.stack([s.loss.slip, s.loss.half_space, s.loss.cylinder])
+    parts = losses_of(s)
     assert np.nanmin(parts) >= -tol.COVER_ENERGY
     power = s.force * s.V + s.torque * s.omega
     assert close(parts.sum(axis=0), power, tol.COVER_ENERGY, scale=1.0)
@@ -59,8 +63,8 @@ def test_the_same_nip_has_the_same_losses():
     V = np.array([[1e-8], [1e-7], [1e-6]])
     s = one.steady(V=V, torque=0.3 * np.linspace(-0.9, 0.9, 7))
     turned = two.steady(V=s.omega[..., 0], torque=s.force[..., 0])
-    mine = np.stack([s.loss.slip, s.loss.half_space, s.loss.cylinder])
-    other = np.stack([turned.loss.slip, turned.loss.cylinder, turned.loss.half_space])
+    mine = losses_of(s)
+    other = losses_of(turned)[[0, 2, 1]]
     assert close(mine / V[..., None], other / V[..., None], tol.COVER_NAMES, scale=1e-6)
 
 

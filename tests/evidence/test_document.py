@@ -3,8 +3,10 @@
 import re
 
 import pytest
-from places import full_sizes, kept
+from places import kept
 from processes import made, stage, stage_refused
+
+from pipeline.evidence.results import SIZES, read_sizes
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
@@ -40,9 +42,8 @@ def test_document_fills_and_refuses(tmp_path):
 )
 def test_committed_sizes_are_those_of_production(file, section):
     found = kept(f"{file}.json")
-    assert all(
-        part["sizes"] == full_sizes(section) for part in found.get("parts", {"": found}).values()
-    )
+    sizes = read_sizes(SIZES, section, quick=False)
+    assert all(part["sizes"] == sizes for part in found.get("parts", {"": found}).values())
 
 
 def test_blocks_show_the_measured_numbers():

@@ -9,10 +9,8 @@ from scipy.special import j1
 
 import viscoroll as vr
 from pipeline.evidence.prove import formulas
-from pipeline.evidence.prove.formulas import jonkers, persson
+from pipeline.evidence.prove.formulas import LOAD, R, jonkers, persson
 from pipeline.stage import read_rows
-
-R, LOAD = formulas.R, formulas.LOAD
 
 
 def test_persson_is_the_integral_of_the_loss_modulus():

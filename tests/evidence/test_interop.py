@@ -128,6 +128,7 @@ PROGRAMS |= {
         "command -v cc && command -v nc-config",
     ),
 }
+in_each_language = pytest.mark.parametrize("name", PROGRAMS)
 
 
 shell = partial(subprocess.run, shell=True, capture_output=True, text=True, check=False)
@@ -247,7 +248,7 @@ def assert_columns(found, exact, rel, **scales):
         assert close(found[:, n], values, rel, scale=scales.get(field, 0.0), what=field)
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
+@in_each_language
 @pytest.mark.parametrize("material", [NIP, LINING])
 def test_programs_have_the_contact_of_covers(name, material, tmp_path):
     """Where shear acts back, at rest too, also at V = -0."""
@@ -262,7 +263,7 @@ def test_programs_have_the_contact_of_covers(name, material, tmp_path):
     assert_columns(found, exact.as_dict(), tol.INTEROP_OF_COVERS, **scales)
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
+@in_each_language
 def test_programs_have_the_contact_of_the_package(folder, name):
     """And NaN for what is no state.  Also the sign of a NaN is none: Q was +mu for a NaN speed."""
     place, given = folder

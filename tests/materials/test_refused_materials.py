@@ -16,7 +16,6 @@ from calls import (
     ROLLER,
     RUBBER_COVER,
     SERIES,
-    SOFT,
     STEEL,
     TREAD,
     file,
@@ -52,10 +51,8 @@ REFUSED = [
         None,
         {
             "shapes factor (3,), materials (2,)": lambda: MANY.slower([1.0, 2.0, 3.0]),
-            "name = 3": lambda: vr.Material(1e6, 0.4, name=3),
             "source = 3": lambda: vr.Measured(1.0, 2.0, 0.1, 3),
-            "T_ref = [1.0, 2.0]": lambda: vr.Material(1e6, 0.4, T_ref=[1.0, 2.0]),
-            "material = rigid": lambda: vr.Material.rigid().plot(),
+            "material = rigid": vr.Material.rigid().plot,
             "G has shape (0,) and tau has shape (1,): must be lists of the same length": lambda: (
                 vr.Material.comsol(1e6, 0.4, [], [1.0])
             ),
@@ -63,6 +60,15 @@ REFUSED = [
             "K with beta = 0": lambda: vr.Material.lsdyna(
                 [1e6, 1e6], [1.0, 0.0], K=[1e6, 1e6], nu=0.4
             ),
+        },
+    ),
+    *each(
+        partial(vr.Material, 1e6, 0.4),
+        {
+            "name = 3": {"name": 3},
+            "T_ref = [1.0, 2.0]": {"T_ref": [1.0, 2.0]},
+            "T_ref is in 1/Hz: must be in s": {"T_ref": xr.DataArray(1.0, attrs={"units": "1/Hz"})},
+            "prony | one Prony series": MANY,
         },
     ),
     *each(
@@ -122,16 +128,9 @@ REFUSED = [
         None,
         {
             "a unit of a ratio, as %": lambda: of_column("V0 [km/h];mu\n0,36;0,1"),
-            "T_ref is in 1/Hz: must be in s": lambda: vr.Material(
-                1e6, 0.5, T_ref=xr.DataArray(1.0, attrs={"units": "1/Hz"})
-            ),
-            "shift = <class | a function of the temperature": lambda: TREAD.at(20.0, shift=vr.WLF),
             "has shape (3,): must be a number, or one for | the argument count, is 2": lambda: (
                 lambda run: roll_inputs(run, dict.fromkeys(run.inputs.medians, [1.0] * 3), 2)
             )(read_run(vr.datasets.path("run.toml"))),
-            "temperature = -31.6 | above T0 - C2 = -31.6 °C, where the WLF shift": lambda: (
-                ROLLER.material.at(-31.6, shift=vr.WLF(T0=20.0))
-            ),
             "sum of k = 1: must be below 1, since 1 minus this sum is": lambda: vr.Material.abaqus(
                 1e7, 0.49, [0.2], [0.1], k=[1.0]
             ),
@@ -151,10 +150,6 @@ REFUSED = [
             "C2 is in degC: must be in K": lambda: vr.WLF(
                 T0=20.0, C2=xr.DataArray(50.0, attrs={"units": "degC"})
             ),
-            "temperature has shape (1, 2): must be one number, as a material": lambda: SOFT.at(
-                [[20.0, 1.0]], vr.WLF(T0=20.0)
-            ),
-            "prony | one Prony series": lambda: vr.Material(1000000.0, 0.5, MANY),
             "high = 1.0 | >= low = 2": lambda: vr.Measured(2.0, 1.0, 0.0),
             "M_error = 1.0: must be pairs": lambda: vr.Measured(1.0, 2.0, 0.0, M_error=1.0),
             "the columns g_i, k_i, tau_i; g has shape | (1, 2)": lambda: vr.Material.abaqus(
@@ -164,10 +159,6 @@ REFUSED = [
                 T0=20.0
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
-            "cylinder has no material of this fit: must be a Cylinder with material=": [
-                lambda: vr.fit_prony(*DMA).validity(ROLLER, 1.0),
-                lambda: vr.fit_prony(*DMA).validity(None, 1.0),
-            ],
             "V0 = None: must be a finite number": lambda: vr.Coastdown(TIMES, sigma=0.1).model(
                 roller(), {}
             ),
@@ -175,9 +166,25 @@ REFUSED = [
         },
     ),
     *each(
-        lambda **more: vr.identify(
-            **{"cylinder": roller(), "unknown": ranges("E"), "data": [resistance()]} | more
-        ),
+        TREAD.at,
+        {
+            "shift = <class | a function of the temperature": (20.0, vr.WLF),
+            "temperature = -31.6 | above T0 - C2 = -31.6 °C, where the WLF shift": (
+                -31.6,
+                vr.WLF(T0=20.0),
+            ),
+            "temperature has shape (1, 2): must be one number, as a material": (
+                [[20.0, 1.0]],
+                vr.WLF(T0=20.0),
+            ),
+        },
+    ),
+    *each(
+        lambda cylinder: vr.fit_prony(*DMA).validity(cylinder, 1.0),
+        {"cylinder has no material of this fit: must be a Cylinder with material=": [ROLLER, None]},
+    ),
+    *each(
+        vr.identify,
         {
             "unknown names no parameter | at least one": {"unknown": {}},
             "unknown E | (1e+06, 2e+06) | contains 3e+06, the value of the cylinder with which": {
@@ -196,17 +203,20 @@ REFUSED = [
             "data has measured values in some records, but none in b: must be records that all": {
                 "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
             },
-            "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
+            "resistance: sigma": {"data": vr.Resistance(HUMP)},
             "run: V0 | given, as the record has no values of V or x": {
-                "data": [vr.Coastdown(TIMES, sigma=0.1)]
+                "data": vr.Coastdown(TIMES, sigma=0.1)
             },
             "temperature = 60.0 | unless material has a shift: give one as shift={'material'": {
-                "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
+                "data": vr.Resistance(HUMP, HUMP, temperature=60.0)
             },
             "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},
             "data = 3 | a list of records": {"data": 3},
             "data is empty: must be at least one record": {"data": []},
         },
+        cylinder=roller(),
+        unknown=ranges("E"),
+        data=resistance(),
     ),
     *each(
         lambda make, n=16: sobol_indices(make(), n),

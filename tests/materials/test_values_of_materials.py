@@ -25,6 +25,8 @@ pytestmark = [
 #: terms of G that all programs are given, Pa
 TERMS = np.array([2e6, 3e6])
 TIMES = np.array([0.0, 1e-4, 0.3, 7.0, 1e200])
+#: the paper's
+SOLID = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
 
 
 def test_cylinder_and_scene():
@@ -54,12 +56,11 @@ def test_cylinder_and_scene():
 
 def test_a_material_in_place_of_the_four_parameters():
     """Kappa and gamma to the bit, creep of its own; a base alike."""
-    rubber = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
-    made = pair(rubber, None)
+    made = pair(SOLID, None)
     scene = made.scene()
     assert scene.replace(material=None, alpha=PAPER_SECTION_5.alpha) == PAPER_SECTION_5
-    assert scene.material == rubber.prony
-    assert vr.Cylinder(**SI, base=rubber).scene() == PAPER_SECTION_5
+    assert scene.material == SOLID.prony
+    assert vr.Cylinder(**SI, base=SOLID).scene() == PAPER_SECTION_5
 
 
 def test_moduli_and_times_of_pairs():
@@ -94,9 +95,8 @@ def test_limits_of_a_material():
     assert (found, rigid.is_rigid) == ([inf, 0.0, 0.0], True)
     # E(t) = E (1 + (T_epsilon/T_sigma - 1) exp(-t/T_sigma)) is the paper's material: 10.7 s over
     # 0.97 s
-    solid = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
     exact = 2.3e5 * (1.0 + (10.7 / 0.97 - 1.0) * np.exp(TIMES / -0.97))
-    assert close(solid.relaxation(TIMES), exact, tol.MATERIAL)
+    assert close(SOLID.relaxation(TIMES), exact, tol.MATERIAL)
     assert vr.Material.sls(2.3e5, 0.49, 1.0, 1.0).prony == vr.Prony.elastic()
 
 

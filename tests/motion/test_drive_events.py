@@ -15,6 +15,7 @@ pytestmark = pytest.mark.filterwarnings(
 
 #: errors over rtol: of V and omega over the largest speed so far, and of times of events
 BOUND = 30.0
+RTOL = 1e-8
 ELASTIC = vr.Scene(1.0, 10.0, 0.2, 1.0)
 
 
@@ -34,10 +35,10 @@ def test_a_faint_push_the_other_way(share):
     assert close(m.V[1:], plain.V[1:], 100.0 * share + BOUND * 1e-10)
 
 
-def locks_and_holds(m, times, V, omega, bound, rtol=1e-8):
+def locks_and_holds(m, times, V, omega, bound):
     """The brake locks, then holds, at these times; speeds are those of the closed form."""
     assert [s.regime for s in m.switches] == ["locked", "held"]
-    assert close([s.t for s in m.switches], times, BOUND * rtol)
+    assert close([s.t for s in m.switches], times, BOUND * RTOL)
     assert close(m.V, V, bound, scale=1.0)
     assert close(m.omega, omega, bound, scale=1.0)
 
@@ -50,17 +51,16 @@ def test_a_brake_locks_just_before_v_is_zero(early):
     On one panel both the stop and, beyond it, the end of slip lie between the same two nodes.  An
     elastic cylinder: V' is the force less mu until then, V a parabola; then the brake holds it.
     """
-    rtol = 1e-8
     end = (np.sqrt(0.06) - 0.2) / 0.01  # of V = 1 - 0.2 t - 0.005 t^2
     stop = end - early  # omega' is (mu + brake)/j = 1
     t = np.concatenate(
         [np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]), [end + 1.0]]
     )
     m = ELASTIC.roll(
-        1.0, -stop, t, rtol=rtol, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1])
+        1.0, -stop, t, rtol=RTOL, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1])
     )
     V = np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0)
-    locks_and_holds(m, [stop, end], V, np.minimum(t - stop, 0.0), BOUND * rtol * stop)
+    locks_and_holds(m, [stop, end], V, np.minimum(t - stop, 0.0), BOUND * RTOL * stop)
 
 
 @pytest.mark.parametrize("pull", [-0.001, 0.001])
@@ -68,18 +68,17 @@ def test_a_locked_cylinder_skids_to_rest(pull):
     """Under a force that changes: at alpha = 1 the edge of slip was sought across V = 0, where |V|
     has a kink, and the cylinder crept on with its brake locked."""
     draw = np.random.default_rng(7)
-    rtol = 1e-8
     mu = 0.2
     V0, kappa = 10.0 ** draw.uniform([[-2.0], [-1.0]], [[1.0], [2.0]], (2, 500))
     scene = ELASTIC.replace(kappa=kappa)
     t = np.geomspace(0.01, 100.0, 50)
     force = vr.Schedule([0.0, t[-1]], [0.0, pull * t[-1]])
-    e = scene.ensemble(V0, 0.0, t, rtol=rtol, brake=10.0, force=force, fields=("V", "regime"))
+    e = scene.ensemble(V0, 0.0, t, rtol=RTOL, brake=10.0, force=force, fields=("V", "regime"))
     # of V = V0 - mu t + pull t^2/2
     end = 2.0 * V0 / mu / (1.0 + np.sqrt(1.0 - 2.0 * pull * V0 / mu**2))
     skids = t < end[:, None]
     V = np.where(skids, V0[:, None] - mu * t + 0.5 * pull * t**2, 0.0)
-    assert (abs(e.V - V).max(axis=1) <= BOUND * rtol * V0).all()
+    assert (abs(e.V - V).max(axis=1) <= BOUND * RTOL * V0).all()
     assert (e.regime == np.where(skids, 3, 4)).all()
 
 
@@ -89,13 +88,12 @@ def test_a_brake_that_begins_at_0():
     An elastic cylinder that slides at V > 0 > omega: V' is -mu and omega' (mu + brake)/j until the
     brake locks, then V goes on to 0.
     """
-    rtol = 1e-8
     t = np.linspace(0.0, 6.0, 25)
-    m = ELASTIC.roll(1.0, -1.0, t, rtol=rtol, brake=vr.Schedule([0.0, 6.0], [0.0, 1.8]))
+    m = ELASTIC.roll(1.0, -1.0, t, rtol=RTOL, brake=vr.Schedule([0.0, 6.0], [0.0, 1.8]))
     # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
     stop = (np.sqrt(0.34) - 0.2) / 0.3
     omega = np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0)
-    locks_and_holds(m, [stop, 5.0], np.maximum(1.0 - 0.2 * t, 0.0), omega, BOUND * rtol)
+    locks_and_holds(m, [stop, 5.0], np.maximum(1.0 - 0.2 * t, 0.0), omega, BOUND * RTOL)
 
 
 @pytest.mark.parametrize("most", [0.0859, 0.0333, 0.1])
@@ -108,10 +106,10 @@ def test_a_brake_gives_way_to_a_ramp(most):
     since = np.linspace(0.0, 0.6, 13)
     t = most / 0.3 + since
     t[0] *= 0.5  # the brake holds
-    m = scene.roll(0.0, 0.0, t, rtol=1e-8, brake=most, torque=ramp)
-    plain = scene.roll(0.0, 0.0, since, rtol=1e-8, torque=ramp)
+    m = scene.roll(0.0, 0.0, t, rtol=RTOL, brake=most, torque=ramp)
+    plain = scene.roll(0.0, 0.0, since, rtol=RTOL, torque=ramp)
     assert m.success
-    assert close((m.V, m.omega), (plain.V, plain.omega), BOUND * 1e-8)
+    assert close((m.V, m.omega), (plain.V, plain.omega), BOUND * RTOL)
 
 
 def test_a_brake_lets_go_after_what_it_takes_turned():

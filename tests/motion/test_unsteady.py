@@ -1,5 +1,7 @@
 """Motions with the added mass, ``unsteady=True``, and from a contact that rested, ``rested=``."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import tolerances as tol
@@ -14,7 +16,7 @@ from pipeline.evidence.prove.motion import balance
 #: nowhere more unsteady than 0.22: it may pass V = 0
 GENTLE = vr.Scene(3.0, 5.0, 0.5, 1.5, 0.8)
 T = np.linspace(0.0, 8.0, 17)
-TOO_SLOW = "became too slow for unsteady=True"
+told_too_slow = partial(pytest.warns, RuntimeWarning, match="became too slow for unsteady=True")
 
 
 @pytest.mark.parametrize(
@@ -62,13 +64,13 @@ def test_from_rest_and_to_it():
     [(RUBBER, 1.0, -0.5), (RUBBER.replace(j=4.0), 1.0, -0.2), (ROLLER, 30.0, 1.0)],
 )
 def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
-    with pytest.warns(RuntimeWarning, match=TOO_SLOW):
+    with told_too_slow():
         m = scene.roll(V0, V0, 100.0, unsteady=True).course
     assert m.status == vr.MotionStatus.UNSTEADY
     assert (m.regime >= 0).tolist() == [True] * (m.t.size - 1) + [False]
     N = scene.contact(m.V[-2], delta=0.0, fields="N").N
     assert close(scene.gamma * N / (1.0 + scene.j), level, 1e-6)
-    with pytest.warns(RuntimeWarning, match=TOO_SLOW):
+    with told_too_slow():
         slower = scene.roll(0.9 * m.V[-2], 0.9 * m.V[-2], T, unsteady=True)
     assert (slower.status, *slower.regime[:2]) == (vr.MotionStatus.UNSTEADY, 1, -1)
 
@@ -89,7 +91,7 @@ def test_it_ends_where_no_regime_can_follow(scene, start, until, force, torque, 
     partial slip, up to 190 delta_star.  From rest there is no departure: once every step was used.
     """
     scene = vr.Scene(*scene)
-    with pytest.warns(RuntimeWarning, match=TOO_SLOW):
+    with told_too_slow():
         m = scene.roll(*start, until, force=force, torque=torque, unsteady=True).course
     assert m.status == vr.MotionStatus.UNSTEADY
     assert m.steps < 200
@@ -103,7 +105,7 @@ def test_the_last_state_is_told_where_the_last_step_cannot_be_repeated():
     """Cut at its end, the last step of this start from a standstill is given up earlier."""
     material = vr.Material(3e6, 0.49, DMA, 3.0)
     roller = vr.Cylinder(R=0.05, m=9.0, material=material, mu=0.6)
-    with pytest.warns(RuntimeWarning, match=TOO_SLOW):
+    with told_too_slow():
         m = roller.roll(0.05, 1.0, np.linspace(0.0, 20.0, 201), unsteady=True, rested=True)
     last = np.flatnonzero(m.regime >= 0)[-1]
     assert (

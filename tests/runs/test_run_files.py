@@ -123,16 +123,15 @@ def test_a_temperature_follows_the_shift_of_a_file():
     given = "E = 3e6\nnu = 0.5\nT_epsilon = 0.01\nT_sigma = 0.001\n"
     temperature = 'temperature = { distribution = "uniform", loc = 10.0, scale = 30.0 }\n'
     Path("rubber.toml").write_text(f"[material]\n{given}{shifts}")
-    found = [
+    first, *others = (
         roll_block(run_of(CERTAIN.replace("E = 3e6\nnu = 0.5\n", text + temperature)), 0)[1].V
         for text in (
             'file = "rubber.toml"\n',
             given + shifts,
             given + shifts + "reference = 20.0\n",
         )
-    ]
-    assert np.array_equal(found[0], found[1])
-    assert np.array_equal(found[0], found[2])
+    )
+    assert all(np.array_equal(first, other) for other in others)
 
 
 @pytest.mark.parametrize(

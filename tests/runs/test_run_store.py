@@ -141,18 +141,11 @@ def test_other_folders_are_refused(tmp_path, whole):
     thesis = tmp_path / "thesis"
     thesis.mkdir()
     (thesis / "chapter.tex").write_text("dear")
-    for call, words in (
-        (
-            partial(run_ensemble, run, whole),
-            "another run file, or of this one before a change: give",
-        ),
-        (
-            partial(run_ensemble, run, thesis),
-            "is no results store (it contains chapter.tex): give another folder",
-        ),
-        (partial(verify, thesis), "not a results store"),
-    ):
-        refused_file(call, words)
+    words = "another run file, or of this one before a change: give"
+    refused_file(partial(run_ensemble, run, whole), words)
+    words = "is no results store (it contains chapter.tex): give another folder"
+    refused_file(partial(run_ensemble, run, thesis), words)
+    refused_file(partial(verify, thesis), "not a results store")
     assert [path.name for path in thesis.iterdir()] == ["chapter.tex"]
     with locked(tmp_path / "store.zarr"):
         refused_file(partial(run_ensemble, run, tmp_path / "store.zarr"), "another process")

@@ -39,6 +39,8 @@ summaries = [
 
 # --- designs ---
 
+each_design = pytest.mark.parametrize("design", ["random", "latin", "sobol"])
+
 
 def points_of_blocks(design, seed, n, dimensions, edges):
     """The points of these blocks of a design, one block after the other."""
@@ -65,7 +67,7 @@ def test_sobol_blocks_are_those_of_scipy():
     assert far.shape == (3, 4)
 
 
-@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
+@each_design
 def test_a_generator_in_place_of_a_seed(design):
     """As SciPy takes it: it moves on, and what was drawn can be drawn again by its seed."""
 
@@ -142,7 +144,7 @@ def test_a_cut_tail_keeps_its_digits():
         assert (np.diff(found) > 0.0).all()
 
 
-@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
+@each_design
 def test_points_depend_on_seed_and_block_alone(design):
     edges = [(0, 300), (300, 600), (600, 1000)]
     forward = points_of_blocks(design, 3, 1000, 2, edges)

@@ -19,6 +19,7 @@ from viscoroll.core.plots import draw
 from viscoroll.runs import estimate
 
 DATA = MEASURED.measured
+SHIFT = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 #: the speed at which the transit frequency of that contact is 628 1/s, a third of the last
 #: frequency of the data
 LAST = 2.866
@@ -78,7 +79,7 @@ def test_a_series_that_ends_below_the_frequencies_in_the_cold(thickness):
 
     def M(*series, **more):
         rubber = vr.Material(4e6, 0.49, vr.Prony(*series), thickness=thickness, **more)
-        cold = rubber.at(-10.0, vr.WLF(C1=8.86, C2=101.6, T0=20.0))
+        cold = rubber.at(-10.0, SHIFT)
         return pair(vr.Material.rigid(), cold, load=1e3, coupled=False).contact(2.0, delta=0.0).M
 
     narrow = [1.0, 2.0], [0.1, 1e-3]
@@ -140,7 +141,7 @@ def test_the_share_of_motions_that_were_not_measured(tmp_path):
     """N(20, 5) degrees: the contact at 1 m/s needs frequencies that the data hold where a_T is
     below a bound.
     """
-    high = 3.0 * BELT.validity(1.0).measured.value * vr.WLF(C1=8.86, C2=101.6, T0=20.0)(17.0)
+    high = 3.0 * BELT.validity(1.0).measured.value * SHIFT(17.0)
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
         estimate(run_of(RUN.replace("HIGH", str(high)), tmp_path), 1)

@@ -22,7 +22,7 @@ from viscoroll.laws.law_netcdf import law_as_dataset
 
 ONE = vr.Prony([10.0], [1.0 / 11.0])
 BELT = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
-
+unwarned = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 
 #: where both ends of a contact slip
 BOTH_SLIP = vr.Cover(vr.Prony([3.0], [0.1]), nu=0.3, thickness=0.5, on="cylinder")
@@ -96,7 +96,7 @@ def test_free_creepage_is_that_with_stick(scene):
 @pytest.mark.parametrize(
     "omega0, force, torque", [(1.0, 0.0, -0.35), (1.0, -0.1, 0.0), (0.5, 0.0, 0.0)]
 )
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@unwarned
 def test_motions_solve_the_equations_and_keep_energy(scene, omega0, force, torque):
     exact = solved(scene, 1.0, omega0, [4.0], force, torque)
     m = scene.roll(1.0, omega0, np.linspace(0.0, 4.0, 41), force=force, torque=torque)
@@ -108,7 +108,7 @@ def test_motions_solve_the_equations_and_keep_energy(scene, omega0, force, torqu
     assert np.diff(m.rolling_loss).min() >= 0.0
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@unwarned
 def test_loss_in_slip_up_to_the_onset_of_partial_slip_is_that_of_the_states(scene):
     """By Gauss's rule over states without a table.  The step of a motion passes the onset, and ends
     there.
@@ -167,7 +167,7 @@ def test_grids_of_other_programs_roll(tmp_path):
     refused(lambda: grid.validity(0.1), "the law of this roller is the table or grid given")
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@unwarned
 @pytest.mark.parametrize("coupled", [True, False])
 @pytest.mark.parametrize("omega_over_V", [1.0, 1.2, 0.0, -10.0])
 def test_the_slowest_free_motions_are_all_alike(coupled, omega_over_V):

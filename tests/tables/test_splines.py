@@ -107,7 +107,7 @@ def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, tmp_pat
         error = abs(getattr(found, field) - getattr(truth, field)).max()
         assert error <= grid[field].attrs["spline_error"]
     assert (found.M_half_space == found.M_cylinder).all()
-    (function, data) = law.ctypes
+    function, data = law.ctypes
     out = (ctypes.c_double * 10)()
     for n, at in enumerate(zip(speeds[:50], omega[:50])):
         assert function(*at, out, data) == 0

@@ -71,7 +71,7 @@ def bound_law(sizes):
         omega = V * (1.0 + creep(scene, V, share))
         law = vr.law(scene)
         numbers = list(zip(V[:few].tolist(), omega[:few].tolist()))
-        (function, data) = law.ctypes
+        function, data = law.ctypes
         out = (ctypes.c_double * RESULTS)()
 
         def contact(v, w, slopes, scene=scene):

@@ -37,7 +37,7 @@ def call_times(sizes):
     scene = vr.presets.PAPER_SECTION_5
     end = np.array([3e-3])
     each = scene.replace(alpha=np.exp(random.uniform(0.0, np.log(100.0), n)))
-    (V, s) = speeds_and_creep(random, n)
+    V, s = speeds_and_creep(random, n)
     start = starts(random, m)
     many = starts(random, 50 * m)
 

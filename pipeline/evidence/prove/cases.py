@@ -72,7 +72,7 @@ class Proof(NamedTuple):
         progress = tqdm(self.found(self.random(seed), size), self.part, delay=1.0, leave=False)
         for where, errors in progress:
             for name in self.claims.keys() & errors.keys():
-                each = np.atleast_1d(np.asarray(errors[name], float)).ravel()
+                each = np.asarray(errors[name], float).ravel()
                 each = np.where(np.isnan(each), np.inf, np.maximum(each, 0.0))
                 row = kept[name]
                 worst = each.max(initial=0.0)
@@ -81,23 +81,21 @@ class Proof(NamedTuple):
                 row[2:] = (worst, where) if worst > row[2] else row[2:]
         rows = []
         for name, (points, total, worst, where) in kept.items():
-            (claim, bound) = self.claims[name]
-            mean = total / max(points, 1)
-            found = {
-                "points": points,
-                "worst": mean if claim.startswith("share") else max(worst, 0.0),
-            }
-            rows.append(
-                {
-                    "claim": claim,
-                    "domain": self.domain,
-                    "bound": bound,
-                    "mean": mean,
-                    "where": where,
-                }
-                | found
-            )
-        return [row for row in rows if row["points"]]
+            if points:
+                claim, bound = self.claims[name]
+                mean = total / points
+                rows.append(
+                    {
+                        "claim": claim,
+                        "domain": self.domain,
+                        "bound": bound,
+                        "mean": mean,
+                        "where": where,
+                        "points": points,
+                        "worst": mean if claim.startswith("share") else worst,
+                    }
+                )
+        return rows
 
 
 def at(**values: float) -> str:
@@ -145,7 +143,7 @@ def free_motion(rows: list[Row]) -> tuple[Case, Any]:
 
 def driven_motion(row: Row) -> Case:
     """The motion that a row of check_driven.json describes."""
-    given = {"alpha": None} | row["scene"]
+    given = dict(row["scene"])
     bodies = {
         name: vr.Prony(**given.pop(name))
         for name in ("prony", "cylinder", "half_space")

@@ -230,23 +230,18 @@ def belt() -> list[Row]:
 
 
 def limits() -> list[Row]:
-    """Limits of Hunter, and of May, Morris & Atack: quantity, what it tends to, and the law."""
+    """Limits of Hunter, and of May, Morris & Atack: quantity, the law, and what it tends to."""
     half = vr.Scene(material=vr.Bodies(MATERIAL, vr.Prony.elastic(), 1.0), kappa=1.0, mu=1.0)
     slow = half.contact(SLOWEST, delta=0.0, fields=("M", "lam"))
     fast = half.contact(FASTEST, delta=0.0, fields=("M", "lam"))
     lost = 1.0 - float(MATERIAL.tau[0]) / float(MATERIAL.T[0])
     hunter = {
-        "M/(P V (T_epsilon - T_sigma)), slow": (float(slow.M) / SLOWEST / lost, 1.0),
-        "contact length over that of the relaxed body, slow": (float(slow.lam), 1.0),
-        "contact length over that of the glassy body, fast": (
-            float(fast.lam) * float(MATERIAL.alpha) ** 0.5,
-            1.0,
-        ),
+        "M/(P V (T_epsilon - T_sigma)), slow": float(slow.M) / SLOWEST / lost,
+        "contact length over that of the relaxed body, slow": float(slow.lam),
+        "contact length over that of the glassy body, fast": float(fast.lam)
+        * float(MATERIAL.alpha) ** 0.5,
     }
-    rows = [
-        {"source": "Hunter", "quantity": name, "law": law, "limit": limit, "off": law / limit - 1.0}
-        for name, (law, limit) in hunter.items()
-    ]
+    compared = [("Hunter", name, law, 1.0) for name, law in hunter.items()]
     for thickness in SPRINGS_THICKNESS:
         cover = vr.Cover(MATERIAL, nu=SPRINGS_NU, thickness=thickness)
         # springs know no shear: neither does the fast law without traction
@@ -255,16 +250,12 @@ def limits() -> list[Row]:
             delta = float(scene.contact(u, delta=0.0, fields="delta_0").delta_0)
             law = float(scene.contact(u, delta=delta, fields="M").M)
             limit = springs_moment(u, thickness, SPRINGS_NU)
-            rows.append(
-                {
-                    "source": "May, Morris & Atack",
-                    "quantity": f"kappa M at h/l0 = {thickness:g}, kappa V = {u:g}",
-                    "law": law,
-                    "limit": limit,
-                    "off": law / limit - 1.0,
-                }
-            )
-    return rows
+            name = f"kappa M at h/l0 = {thickness:g}, kappa V = {u:g}"
+            compared.append(("May, Morris & Atack", name, law, limit))
+    return [
+        {"source": source, "quantity": name, "law": law, "limit": limit, "off": law / limit - 1.0}
+        for source, name, law, limit in compared
+    ]
 
 
 def found() -> Row:

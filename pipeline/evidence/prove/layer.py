@@ -58,8 +58,7 @@ def kernel(u: NDArray, nu: float) -> NDArray:
     c = 3.0 - 4.0 * nu
     once = np.exp(-2.0 * u)
     rest = (4.0 * u * u + 1.0 + c * c) * once
-    result = (c * (1.0 - once * once) - 4.0 * u * once) / (c * (1.0 + once * once) + rest)
-    return result
+    return (c * (1.0 - once * once) - 4.0 * u * once) / (c * (1.0 + once * once) + rest)
 
 
 def load(h: float, nu: float) -> float:
@@ -102,8 +101,7 @@ def springs(p: vr.Prony, z: float, h: float, nu: float) -> NDArray:
     def pressure(x, b):
         s = (b - x)[..., None]
         f = -np.expm1(-s * a) / a
-        result = K * (0.5 * (b * b - x * x) + (f * x[..., None] + f / a - s * (1.0 / a - f)) @ p.E)
-        return result
+        return K * (0.5 * (b * b - x * x) + (f * x[..., None] + f / a - s * (1.0 / a - f)) @ p.E)
 
     b = brentq(lambda b: float(pressure(np.array(b - 2.0 * z), b)), z, 2.0 * z)
     t, w = np.polynomial.legendre.leggauss(100)

@@ -109,32 +109,36 @@ def free(random, count):
         m, best = (rolled(case, one, max_steps=10 * STEPS) for one in (rtol, TIGHTEST))
         where = f"rtol = {rtol:g}, {case}"
         yield where, {"given up": m is None or best is None}
-        if m is None or best is None:
-            continue
-        found = errors(m, best, case.t[-1])
-        factor = condition(case, best)
-        if factor > FACTOR:
-            found["ill"] = found.pop("speed") / factor
-        yield (
-            where,
-            {(name, rtol): error / rtol for name, error in found.items()} | {"steps": m.steps},
-        )
+        if m and best:
+            found = errors(m, best, case.t[-1])
+            factor = condition(case, best)
+            if factor > FACTOR:
+                found["ill"] = found.pop("speed") / factor
+            yield (
+                where,
+                {(name, rtol): error / rtol for name, error in found.items()} | {"steps": m.steps},
+            )
 
 
 def identities(random, count):
     for _ in range(count):
         case = cases.free(random)
         m = rolled(case, RTOL)
-        found = {name: error / RTOL for name, error in balances(case).items()} | {
-            "rise": risen_energy(case) / RTOL
-        }
+        missing = {name: error / RTOL for name, error in balances(case).items()}
         mirrored = in_other_units(case, -1.0, _POWER)
         scaled = in_other_units(case, 1.0, _TIME_SCALE)
-        found["bits"] = any(
-            not np.array_equal(getattr(m, name), each, True)
-            for name, each in vars(mirrored).items()
+        yield (
+            str(case),
+            {
+                "rise": risen_energy(case) / RTOL,
+                "bits": any(
+                    not np.array_equal(getattr(m, name), each, True)
+                    for name, each in vars(mirrored).items()
+                ),
+                "gamma": max(errors(scaled, m, case.t[-1]).values()) / RTOL,
+            }
+            | missing,
         )
-        yield str(case), found | {"gamma": max(errors(scaled, m, case.t[-1]).values()) / RTOL}
 
 
 def in_other_units(case: Case, sign: float, time: float):
@@ -186,10 +190,10 @@ def long_lives(random, count):
     for _ in range(count):
         case = cases.free(random)
         scene = case.scene
-        c = (case.scene.alpha - 1.0) / case.scene.alpha
+        c = (scene.alpha - 1.0) / scene.alpha
         slide = abs(case.omega0 - case.V0) / (scene.gamma * scene.mu * (1.0 + 1.0 / scene.j))
         case = case._replace(t=slide + _LIVES * (1.0 + scene.j) / (scene.gamma * (c or 1.0)))
-        given = case.scene, case.V0, case.omega0, case.t
+        given = scene, case.V0, case.omega0, case.t
         m, rested = (vr.roll(*given, rtol=RTOL, **rest) for rest in ({}, {"rest": 1e-6}))
         good = all(np.isfinite(values).all() for values in (m.V, m.omega, m.x, m.angle))
         if c:
@@ -248,16 +252,12 @@ def balance(m: vr.Motion) -> float:
     return np.abs(work - (energy - energy[0]) - lost).max() / scale if scale > 0.0 else 0.0
 
 
-def check_motions() -> list[tuple[Case, Any]]:
-    """The free motions of data/reference."""
-    return [free_motion(list(rows)) for _, rows in groupby(read_rows(FREE), itemgetter("motion"))]
-
-
 def checked_free(random, few):
-    """Each at every tolerance, divided by rtol, or over rtol x condition/30 where that is
-    larger.
+    """Each of data/reference at every tolerance, divided by rtol, or over rtol x condition/30 where
+    that is larger.
     """
-    for case, best in check_motions():
+    for _, rows in groupby(read_rows(FREE), itemgetter("motion")):
+        case, best = free_motion(list(rows))
         excuse = max(condition(case, best) / FACTOR, 1.0)
         for rtol in CHECKED_TOLERANCES[:few]:
             found = errors(rolled(case, rtol), best, case.t[-1])

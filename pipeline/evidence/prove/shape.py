@@ -138,7 +138,7 @@ def slope_scales(mu: float, V, alpha: float, star) -> dict[str, Any]:
     """What a slope may be measured by: a change of Q by mu as V or delta changes by all of itself;
     c for M.
     """
-    c = (alpha - 1.0) / alpha if alpha > 1.0 else 1.0
+    c = (alpha - 1.0) / alpha
     return {"dQ_dV": mu / V, "dQ_ddelta": mu / star, "dQ_domega": mu / (V * star), "dM_dV": c}
 
 

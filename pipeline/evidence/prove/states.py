@@ -16,11 +16,17 @@ import viscoroll as vr
 from pipeline.validation import FIELDS, closures, random_states
 from viscoroll.contact_mechanics.model_validity import stated_error
 from viscoroll.kernels.law import bessel_ratios
-from viscoroll.kernels.law import bessel_ratios as kernels
 
 from ...stage import Row
-from .. import truth as enclosures
-from ..truth import INPUTS, condition_numbers, contact_enclosure, shape_enclosure
+from ..truth import (
+    INPUTS,
+    condition_numbers,
+    contact_enclosure,
+    ratio_i2,
+    ratio_k,
+    ratio_r,
+    shape_enclosure,
+)
 from .cases import STATES, Proof, at, chosen_alpha, chosen_state, generators, powers, read_elements
 
 # --- r, k, i2 and the slopes of r and k, over all positive doubles ---
@@ -57,21 +63,21 @@ def ulps(value: float, exact, *terms) -> float:
 def ratio_errors(x: float) -> Iterator[tuple[str, float]]:
     """Errors at x: of r, k, i2 in ULP; of r' and k' in ULP of the larger Riccati term."""
     X = arb(x)
-    (r, rc) = kernels.ratio_r(x)
-    (k, kc) = kernels.ratio_k(x)
-    exact_r = enclosures.ratio_r(X)
-    exact_k = enclosures.ratio_k(X)
+    r, rc = bessel_ratios.ratio_r(x)
+    k, kc = bessel_ratios.ratio_k(x)
+    exact_r = ratio_r(X)
+    exact_k = ratio_k(X)
     yield "r", ulps(r, exact_r)
     yield "k", ulps(k, exact_k)
-    yield "i2", ulps(kernels.ratio_i2(x, r), enclosures.ratio_i2(X))
+    yield "i2", ulps(bessel_ratios.ratio_i2(x, r), ratio_i2(X))
     if x >= np.finfo(float).tiny:  # far below, k has fewer digits, and k/x with it
         yield (
             "slope of r",
-            ulps(kernels.slope_r(x, r, rc), 1 - exact_r / X - exact_r**2, exact_r / X),
+            ulps(bessel_ratios.slope_r(x, r, rc), 1 - exact_r / X - exact_r**2, exact_r / X),
         )
         yield (
             "slope of k",
-            ulps(kernels.slope_k(x, k, kc), exact_k**2 + exact_k / X - 1, exact_k / X),
+            ulps(bessel_ratios.slope_k(x, k, kc), exact_k**2 + exact_k / X - 1, exact_k / X),
         )
 
 
@@ -130,11 +136,6 @@ def relative_error(value: float, exact) -> float:
         return math.inf if exact.contains(0) else float((off / abs(exact)).upper())
 
 
-def given(state: tuple[float, ...]) -> Row:
-    """Inputs as the doubles they are, without their signs."""
-    return {name: arb(abs(value)) for name, value in zip(INPUTS, state)}
-
-
 def contact(random, count, each):
     """full_slip, then each field over its bound."""
     for first in range(0, count, _TOGETHER):
@@ -153,7 +154,10 @@ def contact(random, count, each):
                 yield where, {"full_slip": float(off.upper())}
                 continue
             yield where, {"full_slip": 0.0}
-            factors = condition_numbers(given(state))
+            # the doubles as they are, without their signs
+            factors = condition_numbers(
+                {name: arb(abs(value)) for name, value in zip(INPUTS, state)}
+            )
             for name in FIELDS:
                 error = relative_error(values[name][i], exact[name])
                 factor = factors[name]
@@ -187,10 +191,10 @@ def of_stress(random, count):
         delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
         state = vr.contact(scene, V, delta=delta)
         half = 0.5 * state.lam
-        middle = 0.5 * state.lam * state.epsilon
+        middle = half * state.epsilon
         rear = middle - half
         front = middle + half
-        stick = middle + half - state.lam * state.beta
+        stick = front - state.lam * state.beta
         near = half * 10.0 ** random.uniform(-16, 0, 3)
         between = random.uniform(rear, front, 3)
         x = np.concatenate(
@@ -234,9 +238,7 @@ def by_elements(_, count):
         bodies = vr.Bodies(one, other, share=state["share"])
         V = state["V"]
         z = state["z"]
-        c = vr.contact(
-            vr.Scene(alpha=None, kappa=1.0, mu=0.5, material=bodies), V, delta=state["delta"]
-        )
+        c = vr.contact(vr.Scene(kappa=1.0, mu=0.5, material=bodies), V, delta=state["delta"])
         theirs = {
             "load": state["H"],
             "epsilon": state["g"] / z,
@@ -346,7 +348,7 @@ def cover_states(_, count):
     count: how many states of the file, the first ones.
     """
     for truth in read_elements("covers")[:count]:
-        (scene, state, where) = placed(truth)
+        scene, state, where = placed(truth)
         V = truth["V"]
         z = truth["z"]
         # the onsets of the law lie unlike far from free rolling, those without coupling do not
@@ -374,7 +376,7 @@ def free_creep(_, count):
     count: how many states of the file, the first ones.
     """
     for truth in read_elements("free_creep")[:count]:
-        (scene, state, where) = placed(truth)
+        scene, state, where = placed(truth)
         V = truth["V"]
         # in full slip, with so much friction that the law does not limit delta_0* - delta_0
         forth, back = (
