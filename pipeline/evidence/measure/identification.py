@@ -336,8 +336,8 @@ def width(sizes):
 
 
 def times(sizes):
-    """Seconds of processor of a fit of five unknowns to 200 points, from 30 % off, of its five
-    profiles, of a fit from several starts, and of one prediction of the data by a new law.
+    """Seconds of a fit of five unknowns to 200 points, from 30 % off, of its five profiles, of a
+    fit from several starts, and of one prediction of the data by a new law.
     """
     cases = {
         "launched without rotation, V: 5 unknowns, 200 points": THROWN,

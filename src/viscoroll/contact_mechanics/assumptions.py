@@ -66,7 +66,7 @@ class Assumption(NamedTuple):
         """ "yes" if it holds at every V, "no" if not, "?" where no number can decide."""
         return "?" if self.holds is None else "yes" if np.all(self.holds) else "no"
 
-    def reduce_parts(self, last: Any) -> "Assumption":
+    def worst_of_parts(self, last: Any) -> "Assumption":
         """Return the assumption with one state for each part of a sequence of states, and the same
         sentence.
 
@@ -88,7 +88,7 @@ class Assumption(NamedTuple):
         >>> import numpy as np
         >>> import viscoroll as vr
         >>> creep = vr.presets.RUBBER_CYLINDER.validity(1.0, omega=[10.0, 20.0, 10.0]).creep
-        >>> creep.reduce_parts(np.array([0, 2])).holds  # the second state slips fully
+        >>> creep.worst_of_parts(np.array([0, 2])).holds  # the second state slips fully
         array([ True, False])
         """
         faults = np.flatnonzero(~self.holds)

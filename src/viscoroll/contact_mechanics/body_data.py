@@ -311,8 +311,10 @@ class BodyData:
         ends = [
             BEYOND_SERIES / (float(np.min(body.prony.tau)) * body.T_ref)
             for body, share in self.bodies.values()
-            if share >= _LEAST_SHARE and body.measured is None and body.shift is not None
-            if body.prony.tau.size
+            if share >= _LEAST_SHARE
+            and body.measured is None
+            and body.shift is not None
+            and body.prony.tau.size
         ]
         if not ends or self.scene.series is None:
             return None

@@ -188,7 +188,7 @@ class Steadiness(Assumption):
         created.motion_share = motion_share
         return created
 
-    def reduce_parts(self, last: Any) -> Steadiness:
+    def worst_of_parts(self, last: Any) -> Steadiness:
         """Return the assumption of a motion with one value for each part of it: the largest up to
         the end of the part.
 
@@ -208,7 +208,7 @@ class Steadiness(Assumption):
         >>> steady = (
         ...     vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0, 3.0]).validity().steady
         ... )
-        >>> steady.reduce_parts(np.array([1, 2])).value.shape
+        >>> steady.worst_of_parts(np.array([1, 2])).value.shape
         (2,)
         """
         chosen = self._replace(holds=self.holds[last], value=self.value[last])

@@ -267,7 +267,7 @@ class Motion(RollResult):
         # entries that no speed decides have one value
         last = np.searchsorted(states.t[reached], reached_times)
         return Validity(
-            *(entry.reduce_parts(last) if np.ndim(entry.holds) else entry for entry in report)
+            *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
         )
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
